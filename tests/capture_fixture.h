@@ -2,6 +2,8 @@
 #ifndef CAPTURE_FIXTURE_H
 #define CAPTURE_FIXTURE_H
 
+#include "image/geometry/geometry.h"
+
 #include <math.h>
 #include <relume/extensions.h>
 #include <stdio.h>

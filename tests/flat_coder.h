@@ -2,6 +2,8 @@
 #ifndef FLAT_CODER_H
 #define FLAT_CODER_H
 
+#include "format/coder/coding.h"
+
 #include "test.h"
 
 // The same functions at the lights, over flat triangles between them; NULL where the coder itself

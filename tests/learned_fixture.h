@@ -2,6 +2,8 @@
 #ifndef TESTS_LEARNED_FIXTURE_H
 #define TESTS_LEARNED_FIXTURE_H
 
+#include "format/coder/coding.h"
+
 #include "test.h"
 
 enum { LEARNED_LIGHTS = 64, LEARNED_PIXELS = 300, LEARNED_PLANES = 3 * LEARNED_LIGHTS };

@@ -2,6 +2,8 @@
 #ifndef MADE_BTF_H
 #define MADE_BTF_H
 
+#include "material/btf/values.h"
+
 #include "test.h"
 
 enum { MADE_DIRECTIONS = 19, MADE_MOST_DIRECTIONS = 81 };  // of the coarse set, of any

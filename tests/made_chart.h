@@ -2,6 +2,8 @@
 #ifndef MADE_CHART_H
 #define MADE_CHART_H
 
+#include "capture/acquire/chart.h"
+
 #include <math.h>
 #include <relume/extensions.h>
 

@@ -43,8 +43,6 @@ RELUME_API struct relume_vec3 relume_pose_turn(const struct relume_pose *pose,
 RELUME_API struct relume_vec3 relume_pose_turn_back(const struct relume_pose *pose,
                                                     struct relume_vec3 world);
 
-enum { RELUME_MOST_SLABS = 64 };
-
 // Where the pixels of a view lie in the world. Only the members of `projection` count.
 struct relume_geometry {
     enum relume_projection projection;
@@ -75,13 +73,6 @@ RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection
 // Towards the eye, where all pixels see it in the same direction: planar views, orthographically;
 // else 0.
 RELUME_API struct relume_vec3 relume_geometry_eye(const struct relume_geometry *geometry);
-
-// Whether such a cylinder with discs can be: v_min < 0 < v_max, squares that fit, rows above them.
-// True of everything without discs.
-RELUME_API bool relume_geometry_fits(const struct relume_geometry *geometry, int width, int height);
-// False for pixels whose centres lie beside a cylinder's discs.
-RELUME_API bool relume_geometry_shows(const struct relume_geometry *geometry, int width, int height,
-                                      int column, int row);
 
 #ifdef __cplusplus
 }

@@ -7,10 +7,7 @@
 
 #include <relume/extensions.h>
 
-#define relume_object_vertex   relume_mesh_vertex
-#define relume_pack_shadows    relume_shadows_open
-#define relume_shadows_add_sun relume_shadows_add_bright_source
-#define relume_shadows_suns    relume_shadows_bright_sources
+#define relume_object_vertex relume_mesh_vertex
 
 #define relume_baked_is_file(path, limits) (relume_kind_of(path) == RELUME_KIND_BAKED)
 #define relume_tableau_is(path)            (relume_kind_of(path) == RELUME_KIND_SCENE)

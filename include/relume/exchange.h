@@ -105,8 +105,6 @@ enum relume_web_type {
     RELUME_WEB_HSH,           // hemispherical harmonics, 9 coefficients
     RELUME_WEB_SH,            // spherical harmonics, 9 coefficients
 };
-// "bilinear", "rbf", "ptm", "lptm", "hsh", "sh". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_web_type_parse(enum relume_web_type *out, const char *name);
 
 // Zero in a field means its default. Of bytes_per_pixel, psnr_db and quality at most one is given.
 struct relume_export_params {

@@ -26,7 +26,6 @@
 #include <relume/image/photograph.h>
 #include <relume/image/response.h>
 #include <relume/material/btf.h>
-#include <relume/material/btf_environment.h>
 #include <relume/material/change.h>
 #include <relume/material/edit.h>
 #include <relume/material/maps.h>
@@ -38,8 +37,6 @@
 #include <relume/relight/normals.h>
 #include <relume/relight/psf.h>
 #include <relume/relight/relight.h>
-#include <relume/relight/relighter.h>
-#include <relume/relight/shadow.h>
 #include <relume/relight/slab_set.h>
 #include <relume/relight/tone.h>
 #include <relume/relight/view.h>
@@ -52,7 +49,6 @@
 #include <relume/site/study.h>
 #include <relume/world/bake.h>
 #include <relume/world/object.h>
-#include <relume/world/points.h>
 #include <relume/world/reflection.h>
 #include <relume/world/scene.h>
 #include <relume/world/tableau.h>

@@ -105,8 +105,6 @@ enum relume_filter {
     RELUME_FILTER_LINEAR,
     RELUME_FILTER_CUBIC,  // enlarged: Catmull-Rom, within the range of the texels around
 };
-// "auto", "nearest", "linear", "cubic". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_filter_parse(enum relume_filter *out, const char *name);
 
 // How pictures are scaled. Borrowed during the call.
 struct relume_scale_params {

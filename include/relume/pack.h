@@ -25,9 +25,6 @@ enum relume_compression {
 RELUME_RESULT relume_status relume_compression_parse(enum relume_compression *out,
                                                      const char *name);
 
-// Large views are kept at half, a quarter, ... of their size too, so that a smaller picture of all
-// is soon there.
-enum { RELUME_MOST_LEVELS = 16 };
 // Whether a file gets these levels.
 enum relume_pyramid {
     RELUME_PYRAMID_DEFAULT = 0,  // views of more than 16 megapixels, but not of slabs
@@ -97,8 +94,6 @@ struct relume_pack_info {
 // It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
 
-// Most bytes of notes that a file holds itself.
-enum { RELUME_PACK_MOST_NOTES = 1 << 26 };
 // Put a page of annotations (relume/exchange/notes.h, UTF-8) into the file `path`, in place of one
 // that it holds; NULL: take it out. All else stays as it is, pictures byte by byte, check sums are
 // made anew; the file is replaced as a whole or not at all, and one that is open goes on to be what
@@ -113,47 +108,13 @@ RELUME_API const struct relume_geometry *relume_pack_geometry(const relume_pack 
 // The codes of one view; they belong to the pack and stay valid until relume_pack_drop or destroy.
 RELUME_RESULT relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack,
                                               int view);
-// Those of a rectangle of it alone, of which no more is read than the rows of the file that hold
-// it, or tiles. They belong to the caller, but for codebooks, which stay until the pack's are
-// dropped. RELUME_EINVAL where the rectangle does not lie within the view.
-RELUME_RESULT relume_status relume_pack_codes_part(struct relume_codes_part *out, relume_pack *pack,
-                                                   int view, const struct relume_rect *rect);
-// The size of a view at a level: 0 is the view itself, 1 .. info.levels are reduced.
-RELUME_API void relume_pack_level_size(int *width, int *height, const relume_pack *pack, int level);
-// A rectangle of a view at a level, of whose pixels it is counted; else as relume_pack_codes_part.
-RELUME_RESULT relume_status relume_pack_codes_level(struct relume_codes_part *out,
-                                                    relume_pack *pack, int view, int level,
-                                                    const struct relume_rect *rect);
 // Forget the codes of one view to save memory.
 RELUME_API void relume_pack_drop(relume_pack *pack, int view);
 // Depth or mask of a view, one channel; empty when it has none. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack,
                                               int view);
-// The same at a level, as relume_pack_level_size: of each pixel what lies beside its middle.
-RELUME_RESULT relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pack,
-                                                    int view, int level);
 // Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
-
-// Channels of a model of moving shadows (relight/shadow.h).
-enum {
-    RELUME_SHADOW_THICK = 0,     // world units behind the surface, along the axis of the view or
-                                 // away from its eye, in which light is stopped; above 0
-    RELUME_SHADOW_COLOUR = 1,    // r, g, b of luminance 1, or black
-    RELUME_SHADOW_MATTE = 4,     // a, then b in the world
-    RELUME_SHADOW_CHANNELS = 8,  // in all
-};
-
-// Channels of a model of moving highlights.
-enum {
-    RELUME_GLOSS_COLOUR = 0,     // r, g, b: of the matte surface, or what a metal shines like;
-                                 // linear, 0 or more
-    RELUME_GLOSS_NORMAL = 3,     // x and y of a unit vector towards the viewer
-    RELUME_GLOSS_ROUGHNESS = 5,  // glTF's, 0 to 1
-    RELUME_GLOSS_SHINE = 6,      // reflectance at normal incidence; below 0: a metal
-    RELUME_GLOSS_SHARE = 7,      // of that which counts, 0 or more
-    RELUME_GLOSS_CHANNELS = 8,   // in all
-};
 
 // Model of the moving shadows of a view, as it was coded; empty when the file has none.
 RELUME_RESULT relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack,

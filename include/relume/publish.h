@@ -18,9 +18,6 @@ enum relume_publish_for {
     RELUME_PUBLISH_WEB,   // without the twins
     RELUME_PUBLISH_DISK,  // the twins alone
 };
-// "both", "web", "disk". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_publish_for_parse(enum relume_publish_for *out,
-                                                     const char *name);
 
 // What planes are coded as. Every browser with WebGL2 decodes JPEG; AVIF, which is smaller, those
 // since 2023 (some since 2020).
@@ -29,9 +26,6 @@ enum relume_publish_layers {
     RELUME_PUBLISH_AVIF,
     RELUME_PUBLISH_JPEG_AND_AVIF,  // a page takes AVIF, and JPEG where that cannot be decoded
 };
-// "jpeg", "avif", "both". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_publish_layers_parse(enum relume_publish_layers *out,
-                                                        const char *name);
 
 // Texts are UTF-8 and plain: what they hold of HTML is shown, not obeyed. Zero or NULL in a field
 // means its default. Of quality, psnr_db and bytes_per_pixel at most one is given.

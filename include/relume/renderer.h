@@ -77,36 +77,12 @@ RELUME_RESULT relume_status relume_renderer_frame(struct relume_image *out,
                                                   relume_renderer *renderer,
                                                   const struct relume_camera *camera);
 
-// A rectangle of a captured view, in its own size, under the renderer's lights: `*out` is created.
-// Without a pass no more of the file is read than the rows that hold it, however large the view.
-// RELUME_EINVAL where the view has no such part, errors of relume_frame.
-RELUME_RESULT relume_status relume_renderer_part(struct relume_image *out,
-                                                 relume_renderer *renderer, int view,
-                                                 const struct relume_rect *rect);
-
 // The same in another size. Of a view with reduced levels no more is read than what the rectangle
 // has in the one that is fine enough. RELUME_EINVAL also for sizes below 1.
 RELUME_RESULT relume_status relume_renderer_detail(struct relume_image *out,
                                                    relume_renderer *renderer, int view,
                                                    const struct relume_rect *rect, int width,
                                                    int height);
-
-// Where the surface is instead of light, `*out` created likewise: world positions, background far
-// along its ray, NaN where no view sees. Lights and pass are not looked at.
-RELUME_RESULT relume_status relume_renderer_places(struct relume_image *out,
-                                                   relume_renderer *renderer,
-                                                   const struct relume_camera *camera);
-
-// relume_query_rays with the renderer's lights. One ray costs the texels it needs.
-RELUME_RESULT relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *renderer,
-                                                 const struct relume_ray *rays, int n);
-
-// The value along the ray of one place of a frame of the camera's size; pixel centres are at +0.5.
-// It is that pixel of relume_renderer_frame wherever a pixel is no mean of several texels.
-// RELUME_EUNFIT when the file holds no such ray.
-RELUME_RESULT relume_status relume_renderer_pixel(float rgb[3], relume_renderer *renderer,
-                                                  const struct relume_camera *camera, double x,
-                                                  double y);
 
 // Bytes that are kept, the codes of views included.
 RELUME_API uint64_t relume_renderer_bytes(const relume_renderer *renderer);

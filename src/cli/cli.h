@@ -51,9 +51,9 @@ struct command {
     relume_status (*run)(const struct args *args);
 };
 // With the `options` that fill OPTIONS, and `run`, of its file.
-#define COMMAND(called, use, does, shows, least, most)                                             \
+#define COMMAND(function, called, use, does, shows, least, most)                                   \
     .name = called, .usage = use, .summary = does, .example = shows, .min_inputs = least,          \
-    .max_inputs = most, .options = options, .size = sizeof(OPTIONS), .run = run
+    .max_inputs = most, .options = options, .size = sizeof(OPTIONS), .run = function
 extern const struct command *const commands[];
 
 // Whether the option was given that fills `member` of the struct of a command's options.

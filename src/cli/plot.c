@@ -231,7 +231,7 @@ static void draw_hull(struct drawing *d, const struct plot_point *const *sorted)
     cairo_stroke(d->c);
 }
 
-static void take(struct drawing *d, double x0, double y0, double x1, double y1)
+static void take_rectangle(struct drawing *d, double x0, double y0, double x1, double y1)
 {
     d->taken[d->taken_count++] = (struct box){x0, y0, x1, y1};
 }
@@ -304,7 +304,7 @@ static void put_label(struct drawing *d, const struct plot_point *p)
         if (!is_free(d, b) || (i < 8 && is_crossed(d, b)))
             continue;
         draw_label(d->c, cx - 0.5 * w, cy + 0.5 * h, p->label, colour_of(d, p->series));
-        take(d, b.x0, b.y0, b.x1, b.y1);
+        take_rectangle(d, b.x0, b.y0, b.x1, b.y1);
         return;
     }
 }
@@ -339,7 +339,7 @@ static void put_labels(struct drawing *d, const struct plot_point *const *sorted
     find_lines(d, sorted);
     for (int i = 0; i < d->plot->points; i++) {
         const double x = page_x(d, sorted[i]->x), y = page_y(d, sorted[i]->y);
-        take(d, x - RADIUS - 1.0, y - RADIUS - 1.0, x + RADIUS + 1.0, y + RADIUS + 1.0);
+        take_rectangle(d, x - RADIUS - 1.0, y - RADIUS - 1.0, x + RADIUS + 1.0, y + RADIUS + 1.0);
     }
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < d->plot->points; i++)

@@ -8,6 +8,10 @@
 // `ball` are relume_btf_environment on that wall and over orientations all around, the latter
 // relative to all of them.
 #define RELUME_VEC3_SHORT
+#include "material/model/environment.h"
+#include "material/surface/texels.h"
+#include "relight/light/environment.h"
+
 #include <relume/extensions.h>
 
 #include <math.h>

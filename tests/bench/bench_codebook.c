@@ -1,6 +1,8 @@
 // bench_codebook.c - training a codebook, one thread. Without arguments: k = 256 on 302,778 x 18
 // and k = 4096 on 1 M x 27. For bench_codebook.py, which holds other programs against it on the
 // same files of floats: `make FILE N DIM`, `train VECTORS DIM START CODES ROUNDS OUT [split]`.
+#include "format/codebook/books.h"
+
 #include "bench.h"
 
 static float noise(uint32_t *state)

@@ -7,6 +7,7 @@
 // and of a flat surface the last is exact.
 #include "bench.h"
 
+#include "relight/view/view.h"
 #include "world/stage/scene.h"
 
 struct distances {

@@ -1,5 +1,7 @@
 // bench_glare.c - the eye's pattern and the frame seen through it, stage by stage as Table 8.2 of
 // Ritschel 2009 has them, each with its target
+#include "relight/eye/pattern.h"
+
 #include "bench.h"
 
 enum { RUNS = 9 };

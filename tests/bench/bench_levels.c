@@ -6,6 +6,8 @@
 // of it at 2. For each frame: triangles, JND to the picture of the full mesh, and the pop: JND
 // between this eye's pictures of the surface now and of the one of the frame before. Then the same
 // where levels change at once: each frame has the level's own surface.
+#include "world/object/drawn_objects.h"
+
 #include "bench.h"
 
 #include <math.h>

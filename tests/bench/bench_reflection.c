@@ -1,5 +1,7 @@
 // bench_reflection.c - edited reflections of 1280 x 960 places with 1, 8 and 32 constraints, by
 // each set of instructions, on one core and two
+#include "world/reflect/reflection.h"
+
 #include "bench.h"
 
 #include <math.h>

@@ -1,6 +1,8 @@
 // bench_renderer.c FILE - another light on the same view: a renderer against the bare kernel and
 // against relume_frame, which keeps nothing; of a slab also one ray, by its texels and by whole
 // views
+#include "relight/frame/renderer_views.h"
+
 #include "bench.h"
 
 enum { RUNS = 41 };

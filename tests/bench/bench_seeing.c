@@ -4,6 +4,8 @@
 #include "bench.h"
 
 #include "glare/gl_glare.h"
+#include "relight/eye/pattern.h"
+#include "relight/eye/pupil.h"
 #include "window/context_offscreen.h"
 
 enum { RUNS = 5 };

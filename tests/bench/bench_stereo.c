@@ -6,6 +6,9 @@
 // light_directions.txt, light_intensities.txt and normals.npy. Mean angle in degrees for all
 // lights, over five draws of ten of them, and where the lamps' brightness is not known.
 #define RELUME_VEC3_SHORT
+#include "capture/acquire/photometric.h"
+#include "capture/acquire/refine.h"
+
 #include <relume/extensions.h>
 
 #include <stdio.h>

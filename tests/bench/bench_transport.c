@@ -11,6 +11,7 @@
 
 #include "capture_fixture.h"
 #include "made_room.h"
+#include "relight/view/view.h"
 #include "world/transport/cut.h"
 #include "world/transport/instant.h"
 

@@ -5,6 +5,8 @@
 #include "bench.h"
 
 #include "draw/draw.h"
+#include "relight/light/environment.h"
+#include "relight/view/view.h"
 #include "relit/gl_relighter.h"
 #include "session/session.h"
 #include "window/context_offscreen.h"

@@ -1,4 +1,6 @@
 // fuzz_btf.c - BTFs and fitted models of every kind, one of their files made of noise
+#include "material/btf/values.h"
+
 #include "fuzz.h"
 
 #include <dirent.h>

@@ -1,5 +1,7 @@
 // fuzz_light.c - photometric files, lights in words and rigs made of noise; what is accepted is
 // shone on a surface, where every value must be finite
+#include "relight/light/environment.h"
+
 #include "fuzz.h"
 
 static const char *const words[] = {

@@ -1,4 +1,8 @@
 // fuzz_pack.c - relume files made of noise: opened, read, relit, looked at from everywhere
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
+#include "relight/light/refit.h"
+
 #include "fuzz.h"
 
 static const struct relume_limits limits = {

@@ -1,4 +1,6 @@
 // fuzz_relight.c - codes, steps and lights taken from bytes: both kernels must survive and agree
+#include "format/coder/coding.h"
+
 #include "fuzz.h"
 
 struct reader {

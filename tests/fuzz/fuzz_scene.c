@@ -1,5 +1,7 @@
 // fuzz_scene.c - scene files made of noise, which name a slab, a planar file and a mesh that are
 // good; what is accepted is drawn, where every value must be finite
+#include "world/tableau/which.h"
+
 #include "fuzz.h"
 
 #include <math.h>

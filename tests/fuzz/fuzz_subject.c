@@ -1,5 +1,7 @@
 // fuzz_subject.c - subjects made of noise; what is accepted lives for a second, and where it stands
 // in its own light every number must be finite
+#include "relight/eye/pupil.h"
+
 #include "fuzz.h"
 
 static const char *const words[] = {"format",     "relume-subject",

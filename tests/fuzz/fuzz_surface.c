@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include "material/btf/npy.h"
+#include "material/surface/texels.h"
 
 #include <relume/material/surface.h>
 

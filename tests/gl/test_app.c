@@ -10,6 +10,7 @@
 #include "cli/program/say.h"
 #include "draw/visible_lights.h"
 #include "owned.h"
+#include "format/coder/coding.h"
 #include "session/options.h"
 #include "window/context.h"
 

@@ -8,6 +8,8 @@
 
 #include "app/gizmo.h"
 #include "app/orbit.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 #include "session/inspect.h"
 #include "session/record.h"
 

@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "format/coder/coding.h"
 #include "gl/target.h"
 #include "window/context.h"
 

@@ -3,6 +3,9 @@
 // Compares: shared/footprint.glsl, shared/panorama.glsl, shared/panorama_discs.glsl,
 // shared/slab_depth.glsl, shared/slab_lens.glsl, slab_cell.glsl, slab_lens.frag.glsl with
 // footprint.h, panorama.c, panorama_discs.c, slab.c, slab_depth.c, slab_lens.c.
+#include "format/coder/coding.h"
+#include "relight/view/view.h"
+
 #include "fixture.h"
 #include "request.h"
 

@@ -2,6 +2,8 @@
 //
 // Compares: above_zero.glsl, shared/transfer.glsl, shared/transfer_encode.glsl with relight.c,
 // transfer.c.
+#include "format/coder/coding.h"
+
 #include "fixture.h"
 
 static const struct relume_light lights[] = {

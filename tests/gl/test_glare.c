@@ -5,12 +5,16 @@
 #include "app/frame_request.h"
 #include "fixture.h"
 
-#include "app/observer.h"
 #include "app/light_list.h"
+#include "app/observer.h"
 #include "draw/visible_lights.h"
 #include "glare/gl_glare.h"
 #include "glare/glare.h"
 #include "glare/glare_view.h"
+#include "relight/eye/pattern.h"
+#include "relight/eye/pupil.h"
+#include "relight/eye/veil.h"
+#include "relight/frame/viewport.h"
 
 static struct relume_eye *made_eye(double seconds)
 {

@@ -5,6 +5,8 @@
 #include "app/handles_drag.h"
 #include "app/handles_say.h"
 #include "common/vec.h"
+#include "world/object/drawn_objects.h"
+#include "world/reflect/reflection.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -6,6 +6,8 @@
 
 #include "common/vec.h"
 #include "draw/objects_drawer.h"
+#include "relight/light/environment.h"
+#include "relight/view/view.h"
 #include "world/object/object.h"
 
 #include <unistd.h>

@@ -4,6 +4,12 @@
 // Compares: moving/near.frag.glsl, moving/shadow.frag.glsl, moving/shown.glsl,
 // moving/trace.frag.glsl, shared/gloss.glsl, shared/moving.glsl, shared/near_shadow.glsl,
 // shared/stage.glsl with gloss.c, relighter.c, shadows.c, shadows.h, stage.c.
+#include "format/pack/views.h"
+#include "relight/frame/relighter.h"
+#include "relight/light/environment.h"
+#include "relight/shadow/moving.h"
+#include "relight/view/view.h"
+
 #include "fixture.h"
 
 enum { W = 33, H = 21, PIXELS = W * H };

@@ -4,6 +4,10 @@
 // Compares: light/captured.glsl, light/light.glsl, light/light_patches.glsl, light/triangles.glsl,
 // near.frag.glsl, shared/pole.glsl, shared/triangles.glsl, shared/weight_grid.glsl with cells.c,
 // coder.c, directions.c, gonio.c, light.c, near_lights.c, triangles.c, vec.h, zone.c.
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
+#include "relight/light/refit.h"
+
 #include "fixture.h"
 #include "test.h"
 

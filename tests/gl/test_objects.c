@@ -13,6 +13,7 @@
 // model_rfnlc.c, model_rfp.c, model_vpca.c, prefiltered_maps.c, render.c, scalar.h, scene.c,
 // skin.c, sky.c, surface.c, vec.h.
 #include "draw/objects_drawer.h"
+#include "world/object/drawn_objects.h"
 #include "fixture.h"
 #include "test.h"
 

@@ -7,6 +7,9 @@
 
 #include "app/light_list.h"
 #include "panel/draw_panel.h"
+#include "relight/light/refit.h"
+#include "relight/normals/enhance.h"
+#include "relight/view/view.h"
 #include "relit/enhancer.h"
 #include "session/inspect.h"
 

@@ -3,6 +3,8 @@
 #include "fixture.h"
 
 #include "app/light_list.h"
+#include "relight/light/environment.h"
+#include "relight/light/refit.h"
 
 enum { W = 23, H = 17, MANY = 40 };
 

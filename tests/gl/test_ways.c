@@ -4,6 +4,7 @@
 
 #include "capture_fixture.h"
 #include "relit/exchanger.h"
+#include "world/object/drawn_objects.h"
 
 #include <relume/exchange.h>
 #include <relume/world/tableau.h>

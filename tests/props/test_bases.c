@@ -3,6 +3,7 @@
 
 #include "capture_fixture.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 
 enum { LIGHTS = 60, MOST_PLANES = 3 * RELUME_MOST_COEFFICIENTS };
 

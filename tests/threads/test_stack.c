@@ -3,6 +3,9 @@
 // With one thread everything runs in the caller's. Each job runs in one of STACK bytes, where an
 // overflow is a crash. Frames of sanitizers are several times as large: there the same jobs run on
 // a larger stack, for what they find; under ThreadSanitizer by two threads, as one races with none.
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
+
 #include "test.h"
 
 #include "capture_fixture.h"

@@ -3,6 +3,7 @@
 
 #include "capture_fixture.h"
 #include "core/base/thread.h"
+#include "format/coder/coding.h"
 
 #include <stdatomic.h>
 

@@ -3,6 +3,8 @@
 //
 // Each line is a case in JSON; floats as the bits of an integer. The last one says how far the
 // core's own inverse takes weights from those of the library, of the largest of each case.
+#include "format/coder/coding.h"
+
 #include <dlfcn.h>
 #include <math.h>
 #include <relume/format/coder.h>

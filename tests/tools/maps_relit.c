@@ -1,6 +1,8 @@
 // maps_relit.c - maps of a capture, and what the library itself shows of them under some lights
 //
 //   maps_relit CAPTURE DIR ['X Y Z' PNG ...]    writes the folder DIR and each PNG
+#include "material/maps/maps.h"
+
 #include <relume/extensions.h>
 
 #include <stdio.h>

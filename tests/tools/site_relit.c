@@ -7,6 +7,7 @@
 #include <relume/extensions.h>
 
 #include "core/base/json.h"
+#include "format/coder/coding.h"
 #include "image/image/jpeg.h"
 
 #include <math.h>

@@ -2,6 +2,9 @@
 #ifndef PACK_PARTS_H
 #define PACK_PARTS_H
 
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
+
 #include <relume/pack.h>
 #include <string.h>
 

@@ -2,7 +2,11 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "capture/acquire/ball.h"
+#include "capture/acquire/photometric.h"
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 
 #include <dirent.h>
 #include <sys/stat.h>

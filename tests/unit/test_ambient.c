@@ -3,6 +3,9 @@
 #include "made_btf.h"
 
 #include "material/model/ambient.h"
+#include "material/model/environment.h"
+#include "material/surface/texels.h"
+#include "relight/light/environment.h"
 
 #include <relume/material/surface.h>
 

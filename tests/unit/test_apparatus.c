@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "core/base/half.h"
+#include "material/btf/values.h"
 #include "world/stage/apparatus.h"
 
 enum { SIZE = 32, TEXELS = SIZE * SIZE, MANY = 400 };

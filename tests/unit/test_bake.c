@@ -3,6 +3,8 @@
 #include "in_folder.h"
 #include "made_btf.h"
 
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
 #include "world/object/object.h"
 
 enum { SMALL = TEST_SANITIZED };

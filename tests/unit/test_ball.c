@@ -1,4 +1,6 @@
 // Balls and lights against ray-traced photographs whose lamps are known
+#include "capture/acquire/ball.h"
+
 #include "made_ball.h"
 #include "test.h"
 

@@ -1,5 +1,7 @@
 // Billboard clouds: known planes of known shapes, every triangle against its plane by its own
 // measure, texels against the surface, pictures of clouds against those of the mesh.
+#include "shape/distance/lod.h"
+
 #include "in_folder.h"
 
 #include <relume/shape/billboards.h>

@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "core/base/memory.h"
+#include "relight/light/refit.h"
 
 enum { W = 37, H = 11, PIXELS = W * H, LIGHTS = 12, MOST_BOOKS = 3, MOST_PLANES = 3 * 16 };
 static const int counts[MOST_BOOKS] = {300, 7, 1};

@@ -1,9 +1,10 @@
 // Measured materials: directions, containers, the reference, readers of folders.
 #include "test.h"
 
+#include "core/base/half.h"
 #include "core/base/memory.h"
 #include "material/btf/btf.h"
-#include "core/base/half.h"
+#include "material/btf/values.h"
 
 #include <relume/capture.h>
 #include <sys/stat.h>

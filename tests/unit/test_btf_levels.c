@@ -1,8 +1,9 @@
 // Levels of detail of BTFs and of their models: means of values, fitted again.
 #include "made_btf.h"
 
-#include "material/model/model.h"
 #include "core/base/half.h"
+#include "material/btf/values.h"
+#include "material/model/model.h"
 
 enum { WIDTH = 7, HEIGHT = 4 };
 

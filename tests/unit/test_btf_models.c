@@ -2,11 +2,12 @@
 // quality, files.
 #include "made_btf.h"
 
+#include "core/base/half.h"
 #include "core/base/memory.h"
+#include "material/btf/values.h"
 #include "material/model/lobes.h"
 #include "material/model/reduce.h"
 #include "material/model/scalar.h"
-#include "core/base/half.h"
 
 #include <relume/world/scene.h>
 

@@ -1,4 +1,6 @@
 // Colour targets: found wherever they lie, their camera's matrix recovered, other pictures refused
+#include "capture/acquire/chart.h"
+
 #include "test.h"
 
 #include "made_chart.h"

@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "core/base/memory.h"
+#include "format/codebook/books.h"
 
 static float *uniform(size_t floats, uint32_t seed)
 {

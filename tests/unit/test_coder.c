@@ -3,6 +3,7 @@
 
 #include "capture_fixture.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 
 enum { LIGHTS = 40 };
 

@@ -1,4 +1,6 @@
 // test_codes.c - coefficients are the same numbers whatever they are stored as
+#include "format/coder/coding.h"
+
 #include "test.h"
 
 enum { N = 12, PLANES = 3 };

@@ -2,6 +2,7 @@
 // (Wong 1998, 9.1.2)
 #include "test.h"
 
+#include "format/coder/coding.h"
 #include "format/coder/disc.h"
 
 static void test_round_trip(void **state)

@@ -1,4 +1,6 @@
 // Near lights: what a table makes of them is what distant ones would show
+#include "capture/manifest/reflectance_table.h"
+
 #include "lambert_fixture.h"
 
 // The largest difference between the table of a near capture and `n.D` under distant lights, over

@@ -6,6 +6,7 @@
 #include "core/base/half.h"
 #include "core/base/memory.h"
 #include "material/gbrdf/drawing.h"
+#include "material/maps/maps.h"
 #include "material/model/model_gbrdf.h"
 
 #include <relume/material/edit.h>

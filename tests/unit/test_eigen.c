@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 
 #include <math.h>
 #include <string.h>

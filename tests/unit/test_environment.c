@@ -3,6 +3,8 @@
 #include "flat_coder.h"
 
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
 #include "learned_fixture.h"
 
 static struct test_log heard;

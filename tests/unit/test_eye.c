@@ -1,6 +1,7 @@
 // test_eye.c - tests of include/relume/relight/eye.h: a living eye in time, and what stands in the
 // way of light in it (Ritschel 2009, 8.2)
 #include "relight/eye/eye.h"
+#include "relight/eye/pupil.h"
 #include "test.h"
 
 // Eq. 8.2 as printed and as measured, from the table in the notes to the thesis, computed apart.

@@ -1,4 +1,5 @@
 // Depth fused to meshes, against the shapes that the depth was made of; places seen by cameras.
+#include "image/geometry/geometry.h"
 #include "shape/atlas/charts.h"
 #include "shape/fusion/field.h"
 #include "shape/fusion/seen.h"

@@ -4,14 +4,15 @@
 #include "made_energy.h"
 #include "core/base/half.h"
 #include "core/base/memory.h"
-#include "material/model/model_gbrdf.h"
+#include "core/math/lsq.h"
+#include "material/btf/values.h"
 #include "material/gbrdf/als.h"
 #include "material/gbrdf/cluster.h"
 #include "material/gbrdf/cut.h"
 #include "material/gbrdf/depth.h"
 #include "material/gbrdf/fit.h"
 #include "material/gbrdf/planted.h"
-#include "core/math/lsq.h"
+#include "material/model/model_gbrdf.h"
 
 #include <relume/material/btf.h>
 

@@ -2,6 +2,7 @@
 // convolved with the eye's pattern (psf.h)
 #include "core/base/memory.h"
 #include "relight/eye/glare.h"
+#include "relight/eye/veil.h"
 #include "test.h"
 
 // One pattern for all: small, of a default eye.

@@ -3,7 +3,11 @@
 #include "in_folder.h"
 #include "test.h"
 
+#include "format/pack/views.h"
+#include "material/maps/maps.h"
+#include "relight/light/environment.h"
 #include "relight/shadow/gloss.h"
+#include "relight/shadow/moving.h"
 
 #include <relume/material/maps.h>
 

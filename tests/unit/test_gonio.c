@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "core/math/vec.h"
+#include "relight/light/environment.h"
 
 #include <stdlib.h>
 

@@ -3,6 +3,7 @@
 
 #include "core/base/half.h"
 #include "core/math/vec.h"
+#include "material/btf/values.h"
 
 #include <relume/world/scene.h>
 

@@ -1,5 +1,7 @@
 // test_heldout.c - tests of include/relume/encode/heldout.h: coders judged by lights that they have
 // not seen
+#include "format/coder/coding.h"
+
 #include "test.h"
 
 #include "capture_fixture.h"

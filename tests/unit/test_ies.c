@@ -1,4 +1,6 @@
 // test_ies.c - photometric files: every header, every symmetry, and what is refused
+#include "relight/light/environment.h"
+
 #include "test.h"
 
 static struct test_log heard;

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/random.h"
+#include "relight/view/view.h"
 #include "world/stage/shapes.h"
 #include "world/transport/instant.h"
 

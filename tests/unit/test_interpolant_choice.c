@@ -1,4 +1,6 @@
 // test_interpolant_choice.c - what lies between pictures: by what foretells lights left out better
+#include "format/coder/coding.h"
+
 #include "test.h"
 
 #include "capture_fixture.h"

@@ -1,6 +1,7 @@
 // test_jnd.c - just noticeable differences against closed forms
 #include "test.h"
 
+#include "image/compare/jnd.h"
 #include "image/compare/sight.h"
 
 static struct relume_image grey(int width, int height, double value)

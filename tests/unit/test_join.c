@@ -1,4 +1,6 @@
 // test_join.c - parts that become one file: what each has counted of its rows is counted once
+#include "format/team/folder.h"
+
 #include "test.h"
 
 #include "capture_fixture.h"

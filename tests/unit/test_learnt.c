@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "format/pack/learnt.h"
+#include "format/pack/views.h"
 
 #include <math.h>
 

@@ -2,6 +2,7 @@
 // level, and as pictures against those of the full mesh.
 #include "in_folder.h"
 
+#include "world/object/drawn_objects.h"
 #include "world/object/levels.h"
 #include "world/object/object.h"
 

@@ -1,4 +1,6 @@
 // test_light.c - what near lights send to a point, against closed forms
+#include "relight/light/environment.h"
+
 #include "test.h"
 
 static const struct relume_vec3 down = {0, 0, -1};

@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 #include "format/lossy/disparity.h"
 #include "format/lossy/slopes.h"
 

@@ -1,5 +1,7 @@
 // Maps of a surface whose reflectance is known in closed form: glTF 2.0, appendix B, written out as
 // the specification has it, in double precision.
+#include "material/maps/maps.h"
+
 #include "test.h"
 
 enum { SIDE = 36, LIGHTS = 48, MOST = SIDE * SIDE };

@@ -1,5 +1,10 @@
 // Mirrors among objects: what they show of panoramas and environments against closed forms, and the
 // descriptions of edited reflections, good and broken.
+#include "relight/light/environment.h"
+#include "relight/view/view.h"
+#include "world/object/drawn_objects.h"
+#include "world/reflect/reflection.h"
+
 #include "capture_fixture.h"
 #include "in_folder.h"
 

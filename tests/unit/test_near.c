@@ -6,6 +6,10 @@
 
 #include "core/base/memory.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
+#include "relight/light/refit.h"
+#include "relight/view/view.h"
 
 // ---------------------------------------------------------------- the grid
 

@@ -1,6 +1,8 @@
 // Near lights: coefficients fitted at each pixel's own directions
 #include "lambert_fixture.h"
 
+#include "capture/manifest/reflectance_table.h"
+#include "format/coder/coding.h"
 #include "format/coder/near_fit.h"
 
 #include <relume/format/coder.h>

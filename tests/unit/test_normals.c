@@ -1,4 +1,7 @@
 // Normals from relit reflectance, and the passes that use them, against closed forms
+#include "format/coder/coding.h"
+#include "relight/normals/enhance.h"
+
 #include "test.h"
 
 enum { SIDE = 24, LIGHTS = 49 };

@@ -1,5 +1,9 @@
 // Objects covered with BTFs: tangent frames against their definition, pictures against the sample
 // itself, shadows against geometry; descriptions and meshes that are broken.
+#include "material/btf/values.h"
+#include "relight/light/environment.h"
+#include "world/object/drawn_objects.h"
+
 #include "capture_fixture.h"
 #include "in_folder.h"
 #include "made_btf.h"

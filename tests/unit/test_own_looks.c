@@ -1,5 +1,8 @@
 // Materials that a mesh's own file names: values against what glTF's factors, pictures and colours
 // of vertices say; a furnace; files that are broken.
+#include "material/btf/values.h"
+#include "relight/light/environment.h"
+
 #include "capture_fixture.h"
 #include "in_folder.h"
 

@@ -2,9 +2,12 @@
 #include "test.h"
 
 #include "capture_fixture.h"
-#include "format/pack/format.h"
 #include "core/base/half.h"
+#include "format/coder/coding.h"
+#include "format/pack/format.h"
+#include "format/pack/pack_write.h"
 #include "image/image/exr.h"
+#include "relight/light/refit.h"
 #include "pack_in_folder.h"
 #include "pack_parts.h"
 

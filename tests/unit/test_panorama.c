@@ -1,5 +1,7 @@
 // test_panorama.c - tests of src/capture/multiview/panorama.h: the sources of panoramas
 #include "core/math/vec.h"
+#include "image/geometry/geometry.h"
+#include "relight/view/view.h"
 
 #include <relume/relight/view.h>
 

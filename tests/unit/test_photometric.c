@@ -1,6 +1,8 @@
 // Normals, height and refined lights of a surface whose every sample is known
 #include "lambert_fixture.h"
 
+#include "capture/acquire/photometric.h"
+#include "capture/acquire/refine.h"
 #include "core/math/fft.h"
 
 // Mean angle between the fitted and the true normals, degrees.

@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "core/base/memory.h"
+#include "relight/view/view.h"
 #include "world/stage/shapes.h"
 #include "world/transport/points.h"
 

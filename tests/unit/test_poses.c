@@ -2,6 +2,10 @@
 #include "test.h"
 
 #include "capture/manifest/manifest.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
+#include "image/geometry/geometry.h"
+#include "relight/view/view.h"
 #include "capture_fixture.h"
 
 static char folder[64], path[96], json[96];

@@ -1,7 +1,9 @@
 // test_psf.c - tests of include/relume/relight/psf.h: what one point source leaves on the retina of
 // an eye (Ritschel 2009, 8.3, 8.4)
 #include "relight/eye/aperture.h"
+#include "relight/eye/pattern.h"
 #include "relight/eye/psf.h"
+#include "relight/eye/pupil.h"
 #include "test.h"
 
 static const double nm575 = 575e-6;  // mm

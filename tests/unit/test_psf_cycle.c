@@ -1,4 +1,6 @@
 // Loops of patterns: those of the eye where nothing fades, no seam, no light lost.
+#include "relight/eye/pattern.h"
+
 #include "test.h"
 
 #include <relume/relight/psf.h>

@@ -4,6 +4,8 @@
 
 #include "capture_fixture.h"
 #include "encode/levels/reduction.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
 #include "image/image/image.h"
 
 static char folder[64], path[96];

@@ -7,6 +7,7 @@
 
 #include "core/math/lsq.h"
 #include "core/math/vec.h"
+#include "world/reflect/reflection.h"
 
 static char last[512];
 static int warnings;

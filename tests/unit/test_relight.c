@@ -1,4 +1,7 @@
 // test_relight.c - weights, domains and point lights against closed forms
+#include "relight/light/refit.h"
+#include "relight/view/view.h"
+
 #include "relight_fixture.h"
 
 static void test_directional_sum(void **state)

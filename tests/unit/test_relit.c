@@ -1,4 +1,7 @@
 // Views relit again and again: the pictures of relume_relight, and no more work than what moved
+#include "relight/frame/relighter.h"
+#include "relight/light/environment.h"
+
 #include "relight_fixture.h"
 
 enum { SLIDE = 4, GROUPS = RELUME_RELIGHTER_GROUPS };

@@ -3,6 +3,8 @@
 
 #include "capture_fixture.h"
 #include "relight/frame/renderer.h"
+#include "relight/frame/renderer_views.h"
+#include "relight/view/view.h"
 
 enum { W = 31, H = 23, GAP = 24 };
 

@@ -1,4 +1,6 @@
 // Fits that outliers do not pull: the coefficients that made the samples are known
+#include "format/coder/coding.h"
+
 #include "test.h"
 
 #include <relume/format/coder.h>

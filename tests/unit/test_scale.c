@@ -3,6 +3,7 @@
 
 #include "core/math/vec.h"
 #include "image/image/footprint.h"
+#include "relight/view/view.h"
 
 #include <relume/image.h>
 #include <relume/relight/view.h>
@@ -173,17 +174,6 @@ static void borders_wrap_or_keep_to_their_tile(void **state)
     assert_int_equal(relume_image_scale(&got, &image, 6, 2, relume_scale_params(.tiles = 13)),
                      RELUME_EINVAL);
     relume_image_destroy(&image);
-}
-
-static void filters_have_names(void **state)
-{
-    (void)state;
-    enum relume_filter filter;
-    CHECK_OK(relume_filter_parse(&filter, "cubic"));
-    assert_int_equal(filter, RELUME_FILTER_CUBIC);
-    CHECK_OK(relume_filter_parse(&filter, "auto"));
-    assert_int_equal(filter, RELUME_FILTER_DEFAULT);
-    assert_int_equal(relume_filter_parse(&filter, "lanczos"), RELUME_EINVAL);
 }
 
 // ---------------------------------------------------------------- panoramas
@@ -394,7 +384,6 @@ int main(void)
         cmocka_unit_test(a_chequer_becomes_its_mean),
         cmocka_unit_test(enlarging_is_smooth_and_stays_in_range),
         cmocka_unit_test(borders_wrap_or_keep_to_their_tile),
-        cmocka_unit_test(filters_have_names),
         cmocka_unit_test(reduced_looks_are_means),
         cmocka_unit_test(enlarged_looks_are_single_rays),
         cmocka_unit_test(cubic_looks_are_smoother),

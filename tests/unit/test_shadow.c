@@ -1,9 +1,14 @@
 // Shadows traced through the depth of a view: a thin disc that floats above a floor, and what
 // stands around an eye, whose shadows have closed forms
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
+#include "format/pack/views.h"
+#include "relight/light/environment.h"
+#include "relight/shadow/moving.h"
+#include "relight/view/view.h"
+
 #include "in_folder.h"
 #include "test.h"
-
-#include <relume/relight/shadow.h>
 
 enum { SIDE = 64, LIGHTS = 48, PIXELS = SIDE * SIDE, MEET = 9 };
 

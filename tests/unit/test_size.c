@@ -4,6 +4,8 @@
 #include "capture_fixture.h"
 #include "core/base/memory.h"
 #include "encode/encode/overhead.h"
+#include "encode/levels/pyramid.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/size.h"
 #include "in_folder.h"
 

@@ -1,4 +1,6 @@
 // test_slab.c - one slab: rays, blends and frames against closed forms
+#include "relight/view/view.h"
+
 #include <relume/relight/view.h>
 
 #include <math.h>

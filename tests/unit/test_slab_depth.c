@@ -1,4 +1,6 @@
 // Slabs whose surface is known in closed form: by depth, and through an aperture
+#include "relight/view/view.h"
+
 #include "test.h"
 
 enum { SIDE = 4, VIEWS = SIDE * SIDE, W = 120, H = 90 };

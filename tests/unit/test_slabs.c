@@ -1,4 +1,8 @@
 // Several slabs around a painted ball: what any eye sees of it is known in closed form
+#include "image/geometry/geometry.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
+
 #include "test.h"
 
 #include <relume/relight/slab_set.h>

@@ -1,4 +1,6 @@
 // Normals of a sphere whose reflectance obeys no law that the solver knows by name
+#include "capture/acquire/photometric.h"
+
 #include "test.h"
 
 #include <relume/capture/photometric.h>

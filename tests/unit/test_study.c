@@ -1,4 +1,6 @@
 // test_study.c - what answers say, against closed forms and published scores
+#include "site/study/statistics.h"
+
 #include "test.h"
 
 static char folder[64];

@@ -1,8 +1,12 @@
 // Large surfaces: cuts against all cuts, tiles, lookups through maps, files, pictures.
 #include "made_btf.h"
 
-#include "material/synthesis/cut.h"
+#include "material/btf/values.h"
+#include "material/model/environment.h"
 #include "material/surface/surface.h"
+#include "material/surface/texels.h"
+#include "material/synthesis/cut.h"
+#include "relight/light/environment.h"
 
 // ---------------------------------------------------------------- samples
 

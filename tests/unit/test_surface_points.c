@@ -1,8 +1,8 @@
 // Surfaces as trees of points for those who gather light themselves: areas, balls, what leaves
 // stand for; nothing known, wrong sizes.
-#include "test.h"
+#include "world/object/object_points.h"
 
-#include <relume/world/points.h>
+#include "test.h"
 
 #include <stdio.h>
 

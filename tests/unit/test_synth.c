@@ -1,5 +1,6 @@
 // The virtual light stage: cameras, radiometry, shadows, depth, indirect light, capture folders.
 #include "core/base/memory.h"
+#include "relight/view/view.h"
 #include "world/stage/render.h"
 
 #include <relume/capture.h>

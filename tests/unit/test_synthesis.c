@@ -438,8 +438,6 @@ static void test_refused(void **state)
     uint32_t texel;
     assert_int_equal(relume_texture_grow(&texel, 1 << 20, 1 << 20, &t, NULL), RELUME_ELIMIT);
     assert_int_equal(relume_texture_grow(&texel, 0, 1, &t, NULL), RELUME_ELIMIT);
-    enum relume_grow_method method;
-    assert_int_equal(relume_grow_method_parse(&method, "tile"), RELUME_EINVAL);
     relume_regular_destroy(&other);
     relume_texture_destroy(&t);
     relume_texture_destroy(&small);

@@ -1,4 +1,6 @@
 // test_table.c - images kept in memory: what a table reads, whether from a file or not
+#include "capture/manifest/reflectance_table.h"
+
 #include "in_folder.h"
 
 enum { LIGHTS = 3, WIDTH = 20, HEIGHT = 40, BYTES = 3 * WIDTH * HEIGHT };

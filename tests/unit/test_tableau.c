@@ -3,7 +3,9 @@
 #include "in_folder.h"
 #include "world/stage/scene.h"
 
+#include "relight/light/environment.h"
 #include "world/stage/shapes.h"
+#include "world/tableau/which.h"
 
 #include <relume/exchange.h>
 #include <sys/stat.h>

@@ -1,6 +1,7 @@
 // test_team.c - members of a team come to what one machine comes to, and believe no piece
 #include "test.h"
 
+#include "format/codebook/books.h"
 #include "format/codebook/codebook.h"
 #include "format/team/array.h"
 

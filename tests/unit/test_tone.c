@@ -10,16 +10,6 @@ static void apply(const struct relume_tone *tone, float out[3], float r, float g
     tone->apply(out, rgb, 4);
 }
 
-static void tones_are_found_by_name(void **state)
-{
-    (void)state;
-    int n = 0;
-    for (; relume_tones[n]; n++)
-        assert_ptr_equal(relume_tone_find(relume_tones[n]->name), relume_tones[n]);
-    assert_int_equal(n, 4);
-    assert_null(relume_tone_find("sepia"));
-}
-
 // Grey goes up and never down, from 0 to at most 1, whatever the value.
 static void greys_keep_their_order(void **state)
 {
@@ -183,7 +173,6 @@ static void the_meter_sees_no_background(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tones_are_found_by_name),
         cmocka_unit_test(greys_keep_their_order),
         cmocka_unit_test(known_values),
         cmocka_unit_test(images_are_exposed_first),

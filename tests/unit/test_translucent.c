@@ -2,6 +2,7 @@
 // against sums over all points, bodies of every size, open and flipped ones, and descriptions.
 #include "core/base/memory.h"
 #include "in_folder.h"
+#include "relight/light/environment.h"
 #include "world/stage/shapes.h"
 #include "world/transport/glow.h"
 

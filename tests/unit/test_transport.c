@@ -4,6 +4,7 @@
 #include "capture_fixture.h"
 #include "in_folder.h"
 #include "made_room.h"
+#include "relight/view/view.h"
 #include "world/transport/transport.h"
 
 #include <sys/stat.h>

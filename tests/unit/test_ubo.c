@@ -2,9 +2,10 @@
 #include "in_folder.h"
 #include "made_ubo.h"
 
+#include "core/base/half.h"
 #include "core/base/memory.h"
 #include "material/btf/btf.h"
-#include "core/base/half.h"
+#include "material/btf/values.h"
 
 static const double views[4][2] = {{0, 0}, {0.6, 0.3}, {0.7, 2.5}, {0.5, -1.8}};
 static const double lights[5][2] = {{0, 0}, {0.4, 1.0}, {0.9, 2.2}, {1.3, -2.0}, {1.2, -0.6}};

@@ -1,4 +1,6 @@
 // How frames show the world: places and rays, solid angles, lamps in view and what hides them
+#include "relight/frame/viewport.h"
+
 #include "test.h"
 
 #include <relume/relight/viewport.h>

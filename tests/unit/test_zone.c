@@ -2,6 +2,9 @@
 #include "test.h"
 
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
+#include "relight/light/refit.h"
 
 #include <relume/light.h>
 #include <relume/relight/relight.h>

@@ -2,11 +2,12 @@
 #include "app/app.h"
 
 #include "app/handles.h"
-#include "app/notes.h"
 #include "app/light_list.h"
+#include "app/notes.h"
 #include "app/orbit.h"
 #include "cli/program/say.h"
 #include "common/vec.h"
+#include "relight/view/slab_set.h"
 
 #include <relume/relight/tone.h>
 

@@ -5,6 +5,8 @@
 #include "app/light_list.h"
 #include "app/orbit.h"
 #include "common/vec.h"
+#include "format/coder/coding.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 

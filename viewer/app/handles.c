@@ -2,6 +2,8 @@
 #include "app/handles.h"
 
 #include "common/vec.h"
+#include "world/object/drawn_objects.h"
+#include "world/reflect/reflection.h"
 
 #include <stdarg.h>
 #include <stdio.h>

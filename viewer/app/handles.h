@@ -3,6 +3,8 @@
 #ifndef VIEWER_HANDLES_H
 #define VIEWER_HANDLES_H
 
+#include "world/reflect/reflection.h"
+
 #include <relume/world/object.h>
 
 // What a press on a mirror begins.

@@ -3,6 +3,8 @@
 
 #include "app/sight.h"
 #include "common/vec.h"
+#include "relight/frame/viewport.h"
+#include "world/reflect/reflection.h"
 
 static const double grasp = 10.0;      // pixels around a handle that count as on it
 static const double far_sizes = 1e4;   // where the red handle of a far thing is, in sizes of all

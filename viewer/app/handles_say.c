@@ -7,6 +7,7 @@
 #include "app/sight.h"
 #include "cli/program/say.h"
 #include "common/vec.h"
+#include "world/reflect/reflection.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,10 +4,12 @@
 #include "app/app.h"
 #include "app/handles.h"
 #include "app/handles_say.h"
-#include "app/notes.h"
 #include "app/light_list.h"
+#include "app/notes.h"
 #include "app/orbit.h"
 #include "app/way.h"
+#include "relight/view/slab_set.h"
+#include "world/object/drawn_objects.h"
 
 #include <relume/relight/tone.h>
 

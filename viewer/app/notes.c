@@ -4,6 +4,8 @@
 #include "app/gizmo.h"
 #include "app/view_geometry.h"
 #include "common/vec.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 // observer.c - what can be chosen of the eye that looks at the frame (glare), in numbers and in
 // words
 #include "app/observer.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <stddef.h>

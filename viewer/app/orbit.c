@@ -2,6 +2,7 @@
 #include "app/orbit.h"
 
 #include "common/vec.h"
+#include "relight/view/slab_set.h"
 
 #include <math.h>
 

@@ -1,5 +1,7 @@
 // sight.c - how a frame shows the world: the ray of a pixel, the pixel of a point (viewport.h)
 #include "app/sight.h"
+#include "relight/frame/viewport.h"
+#include "relight/view/slab_set.h"
 
 struct relume_viewport sight_of_picture(const struct app_file *file, struct relume_vec3 eye)
 {

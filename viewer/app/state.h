@@ -6,6 +6,7 @@
 #define VIEWER_STATE_H
 
 #include "app/observer.h"
+#include "format/coder/coding.h"
 
 #include <relume/frame.h>
 #include <relume/relight/enhance.h>

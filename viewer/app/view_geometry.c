@@ -1,5 +1,6 @@
 // view_geometry.c - where what the file shows lies in the frame
 #include "app/view_geometry.h"
+#include "relight/view/slab_set.h"
 
 #include <math.h>
 

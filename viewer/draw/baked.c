@@ -3,6 +3,7 @@
 #include "draw/baked.h"
 
 #include "cli/program/say.h"
+#include "world/object/baked_object.h"
 
 #include <stdlib.h>
 #include <string.h>

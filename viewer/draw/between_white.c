@@ -2,6 +2,7 @@
 #include "draw/between_white.h"
 
 #include "draw/objects_drawer_parts.h"
+#include "relight/light/environment.h"
 
 #include <string.h>
 

@@ -5,6 +5,9 @@
 #include "cli/program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
+#include "material/btf/values.h"
+#include "material/model/environment.h"
+#include "material/surface/texels.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,6 +4,7 @@
 #define VIEWER_BTF_UPLOAD_H
 
 #include "gl/program.h"
+#include "material/model/environment.h"
 #include "relit/light_uniforms.h"
 
 #include <relume/world/object.h>

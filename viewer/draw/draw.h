@@ -9,6 +9,8 @@
 #include "draw/visible_lights.h"
 #include "gl/program.h"
 #include "gl/target.h"
+#include "relight/frame/viewport.h"
+#include "relight/view/view.h"
 
 #include <relume/relight/slab_set.h>
 #include <relume/relight/view.h>

@@ -4,6 +4,7 @@
 // u depends on s alone and v on t alone, so the part of the window that looks through one cell of
 // the uv plane is a rectangle; a cell needs only its own four views, however large the slab is.
 #include "draw/draw.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 

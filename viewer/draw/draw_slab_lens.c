@@ -1,5 +1,6 @@
 // draw_slab_lens.c - a slab through an aperture: cameras are added one by one, then divided
 #include "draw/draw.h"
+#include "relight/view/view.h"
 
 enum { VIEW = DRAW_OWN, PICTURE, ST, EYE, PLACE, STEPS, GRID, LENS, COUNT };
 static const char *const uniforms[] = {

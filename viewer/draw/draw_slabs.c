@@ -4,6 +4,8 @@
 // rectangle around it, and each pixel asks whether its ray passes the cell.
 #include "common/vec.h"
 #include "draw/draw.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 

@@ -1,5 +1,6 @@
 // draw_source.c - draws the lights that are in view as small bright points
 #include "draw/draw.h"
+#include "relight/frame/viewport.h"
 
 #include <math.h>
 

@@ -3,6 +3,9 @@
 #include "draw/file_views.h"
 
 #include "cli/program/say.h"
+#include "image/geometry/geometry.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,6 +5,7 @@
 
 #include "app/frame_request.h"
 #include "gl/target.h"
+#include "relight/view/view.h"
 #include "relit/depths.h"
 #include "relit/gl_relighter.h"
 

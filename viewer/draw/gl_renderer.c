@@ -3,6 +3,7 @@
 
 #include "cli/program/say.h"
 #include "draw/gl_renderer_parts.h"
+#include "relight/frame/viewport.h"
 
 #include <relume/relight/tone.h>
 

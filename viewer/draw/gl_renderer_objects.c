@@ -6,6 +6,7 @@
 #include "common/vec.h"
 #include "draw/gl_renderer.h"
 #include "draw/gl_renderer_parts.h"
+#include "relight/view/slab_set.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 #include "cli/program/clock.h"
 #include "draw/gl_renderer.h"
 #include "draw/gl_renderer_parts.h"
+#include "world/transport/passes.h"
 
 #include <relume/world/transport.h>
 

@@ -2,6 +2,8 @@
 #include "draw/mirror_distances.h"
 
 #include "gl/target.h"
+#include "world/object/drawn_objects.h"
+#include "world/reflect/reflection.h"
 
 #include <math.h>
 #include <stdlib.h>

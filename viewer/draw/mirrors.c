@@ -1,7 +1,10 @@
 // mirrors.c - mirrors among objects, on the GPU. Twin: src/world/object/mirror.c
 #include "draw/mirrors.h"
 
+#include "relight/light/environment.h"
 #include "relit/light_uniforms.h"
+#include "world/object/drawn_objects.h"
+#include "world/reflect/reflection.h"
 
 #include <math.h>
 #include <stdlib.h>

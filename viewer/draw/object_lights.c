@@ -1,5 +1,6 @@
 // object_lights.c - the lights of objects, and the light samples that approximate them
 #include "draw/object_lights.h"
+#include "world/object/drawn_objects.h"
 
 #include <stdlib.h>
 #include <string.h>

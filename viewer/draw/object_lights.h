@@ -2,6 +2,8 @@
 #ifndef VIEWER_OBJECT_LIGHTS_H
 #define VIEWER_OBJECT_LIGHTS_H
 
+#include "world/object/drawn_objects.h"
+
 #include <relume/world/object.h>
 
 // Zeroed there are no lights.

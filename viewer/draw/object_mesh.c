@@ -1,5 +1,6 @@
 // object_mesh.c - vertices and triangles of objects on the GPU
 #include "draw/object_mesh.h"
+#include "world/object/drawn_objects.h"
 
 #include <stddef.h>
 

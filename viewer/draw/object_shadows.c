@@ -2,6 +2,7 @@
 #include "draw/object_shadows.h"
 
 #include "common/vec.h"
+#include "world/object/drawn_objects.h"
 
 enum {
     CAST_SCENE = DRAW_OWN,

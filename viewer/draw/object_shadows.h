@@ -7,6 +7,7 @@
 #include "draw/object_lights.h"
 #include "draw/object_parts.h"
 #include "draw/shadow_map.h"
+#include "world/object/drawn_objects.h"
 
 struct object_shadows {
     struct program depth, cast;

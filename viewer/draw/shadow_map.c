@@ -4,6 +4,8 @@
 #include "cli/program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
+#include "relight/light/environment.h"
+#include "world/object/drawn_objects.h"
 
 #include <string.h>
 

@@ -6,6 +6,7 @@
 #define VIEWER_SHADOW_MAP_H
 
 #include "gl/program.h"
+#include "world/object/drawn_objects.h"
 
 #include <relume/world/object.h>
 

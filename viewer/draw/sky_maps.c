@@ -3,6 +3,8 @@
 #include "draw/sky_maps.h"
 
 #include "gl/target.h"
+#include "material/model/environment.h"
+#include "relight/light/environment.h"
 #include "relit/light_uniforms.h"
 
 #include <stdlib.h>

@@ -4,8 +4,7 @@
 #define VIEWER_SKY_MAPS_H
 
 #include "gl/gl.h"
-
-#include <relume/material/btf_environment.h>
+#include "material/model/environment.h"
 
 struct sky_map {
     uint64_t of;  // fingerprint of the environment

@@ -1,5 +1,6 @@
 // slab_drawer.c - frames of an eye in front of one slab, or of several
 #include "draw/slab_drawer.h"
+#include "relight/view/slab_set.h"
 
 enum { MOVING_SHARE = 8 };  // of the pinholes of a lens, while something moves
 

@@ -1,6 +1,7 @@
 // view_parts.c - parts of a slab's views, where all that an eye needs is too much for the graphics
 // memory
 #include "draw/view_parts.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,6 +3,8 @@
 
 #include "app/sight.h"
 #include "common/vec.h"
+#include "relight/frame/viewport.h"
+#include "relight/view/slab_set.h"
 
 void hiding_scene_forget(struct hiding_scene *s)
 {

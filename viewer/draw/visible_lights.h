@@ -5,6 +5,7 @@
 #define VIEWER_VISIBLE_LIGHTS_H
 
 #include "app/frame_request.h"
+#include "relight/frame/viewport.h"
 #include "relit/loader.h"
 
 #include <relume/relight/viewport.h>

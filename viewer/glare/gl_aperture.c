@@ -4,6 +4,7 @@
 
 #include "cli/program/say.h"
 #include "gl/target.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -4,6 +4,7 @@
 #define VIEWER_GL_APERTURE_H
 
 #include "gl/program.h"
+#include "relight/eye/pupil.h"
 
 #include <relume/relight/eye.h>
 

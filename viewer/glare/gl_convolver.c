@@ -2,6 +2,7 @@
 #include "glare/gl_convolver.h"
 
 #include "gl/program.h"
+#include "relight/eye/veil.h"
 
 #include <math.h>
 

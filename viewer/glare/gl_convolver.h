@@ -4,6 +4,7 @@
 
 #include "gl/target.h"
 #include "glare/gl_psf.h"
+#include "relight/eye/veil.h"
 
 #include <relume/relight/glare.h>
 

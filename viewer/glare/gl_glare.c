@@ -1,5 +1,6 @@
 // gl_glare.c - a frame as an eye sees it, by compute passes of OpenGL 4.3
 #include "glare/gl_glare.h"
+#include "relight/eye/veil.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,6 +3,8 @@
 
 #include "gl/program.h"
 #include "gl/target.h"
+#include "relight/eye/pattern.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 
 #include "glare/gl_aperture.h"
 #include "glare/gl_fft.h"
+#include "relight/eye/pattern.h"
 
 #include <relume/relight/psf.h>
 

@@ -2,6 +2,7 @@
 #include "glare/glare.h"
 
 #include "glare/glare_view.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 // glare_view.c - how large a pixel of the frame is to the eye, and what of the pattern fits it
 #include "glare/glare_view.h"
+#include "relight/eye/veil.h"
 
 #include <math.h>
 

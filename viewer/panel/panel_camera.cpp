@@ -4,6 +4,7 @@
 
 extern "C" {
 #include "app/orbit.h"
+#include "relight/normals/enhance.h"
 }
 
 #include <algorithm>

@@ -2,6 +2,8 @@
 #include "panel/panel_parts.h"
 
 extern "C" {
+#include "material/gbrdf/edit_table.h"
+
 #include <relume/material/edit.h>
 }
 

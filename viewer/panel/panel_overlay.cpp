@@ -4,6 +4,7 @@
 extern "C" {
 #include "app/events.h"
 #include "app/handles.h"
+#include "format/coder/coding.h"
 }
 
 #include <algorithm>

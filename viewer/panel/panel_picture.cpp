@@ -2,6 +2,10 @@
 // histogram
 #include "panel/panel_parts.h"
 
+extern "C" {
+#include "world/object/drawn_objects.h"
+}
+
 #include <relume/relight/tone.h>
 
 #include <cstdio>

@@ -5,6 +5,7 @@
 extern "C" {
 #include "app/handles.h"
 #include "app/handles_drag.h"
+#include "world/reflect/reflection.h"
 }
 
 #include <cstdarg>

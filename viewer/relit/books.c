@@ -2,6 +2,7 @@
 #include "relit/books.h"
 
 #include "gl/target.h"
+#include "relight/light/refit.h"
 
 #include <stdlib.h>
 #include <string.h>

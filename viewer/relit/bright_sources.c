@@ -2,9 +2,12 @@
 // each bright source is relit alone and replaced in the picture of the whole by what it shows with
 // moving shadows and highlights. Twin: exchange_bright_sources of src/relight/frame/relighter.c
 #include "common/vec.h"
-#include "relit/moving.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
+#include "relight/shadow/moving.h"
 #include "relit/gl_relighter.h"
 #include "relit/gl_relighter_parts.h"
+#include "relit/moving.h"
 
 static relume_status need_room(struct gl_relighter *r, const struct relit_view *v)
 {

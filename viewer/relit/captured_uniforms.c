@@ -1,8 +1,10 @@
 // captured_uniforms.c - the captured lights as uniforms: zone and triangles
 #include "relit/captured_uniforms.h"
 
+#include "format/coder/coding.h"
 #include "gl/program.h"
 #include "gl/target.h"
+#include "relight/light/refit.h"
 #include "relit/light_uniforms.h"
 
 #include <stdlib.h>

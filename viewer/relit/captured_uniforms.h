@@ -4,6 +4,7 @@
 #define VIEWER_CAPTURED_UNIFORMS_H
 
 #include "gl/gl.h"
+#include "relight/light/refit.h"
 
 #include <relume/relight/relight.h>
 

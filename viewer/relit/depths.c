@@ -2,6 +2,7 @@
 #include "relit/depths.h"
 
 #include "gl/target.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 
 #include "core/base/budget.h"
 #include "gl/gl.h"
+#include "relight/view/view.h"
 
 #include <relume/relight/view.h>
 

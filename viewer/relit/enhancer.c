@@ -1,8 +1,13 @@
 // enhancer.c - passes over relit views: normals are fitted once for each view that is looked at
 #include "relit/enhancer.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "cli/program/say.h"
 #include "common/vec.h"
+#include "image/geometry/geometry.h"
+#include "relight/normals/enhance.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <stdlib.h>

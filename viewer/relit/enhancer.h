@@ -2,6 +2,7 @@
 #ifndef VIEWER_ENHANCER_H
 #define VIEWER_ENHANCER_H
 
+#include "image/geometry/geometry.h"
 #include "relit/gl_relighter.h"
 
 #include <relume/capture.h>

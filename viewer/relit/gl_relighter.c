@@ -3,9 +3,12 @@
 #include "relit/gl_relighter.h"
 
 #include "cli/program/say.h"
+#include "format/coder/coding.h"
+#include "relight/frame/relighter.h"
+#include "relight/shadow/moving.h"
 #include "relit/books.h"
-#include "relit/moving.h"
 #include "relit/gl_relighter_parts.h"
+#include "relit/moving.h"
 
 #include <stdlib.h>
 #include <string.h>

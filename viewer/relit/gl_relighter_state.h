@@ -3,14 +3,16 @@
 #define VIEWER_GL_RELIGHTER_STATE_H
 
 #include "core/base/budget.h"
+#include "format/coder/coding.h"
 #include "gl/program.h"
 #include "gl/target.h"
+#include "relight/frame/relighter.h"
+#include "relight/shadow/moving.h"
 #include "relit/loader.h"
 #include "relit/moving_state.h"
 #include "relit/nearby.h"
 
 #include <relume/relight/relight.h>
-#include <relume/relight/relighter.h>
 
 struct relit_view {
     bool present;

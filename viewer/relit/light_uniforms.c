@@ -2,10 +2,11 @@
 // textures
 #include "relit/light_uniforms.h"
 
-#include "gl/program.h"
 #include "cli/program/say.h"
 #include "common/vec.h"
+#include "gl/program.h"
 #include "gl/target.h"
+#include "relight/light/environment.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 // linear_copy.c - environments on codes of the display domain: a relighter of linear codes, made
 // once from them
+#include "relight/light/refit.h"
 #include "relit/gl_relighter.h"
 #include "relit/gl_relighter_parts.h"
 

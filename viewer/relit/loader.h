@@ -2,7 +2,9 @@
 #ifndef VIEWER_LOADER_H
 #define VIEWER_LOADER_H
 
-#include <relume/relight/shadow.h>
+#include "format/coder/coding.h"
+#include "relight/shadow/moving.h"
+
 #include <relume/format/coder.h>
 
 // Where codes come from: a pack, or a test. `drop` (may be NULL) hears that one who asked for a

@@ -2,6 +2,7 @@
 #include "relit/moving.h"
 
 #include "cli/program/say.h"
+#include "relight/shadow/moving.h"
 #include "relit/moving_parts.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #ifndef VIEWER_MOVING_H
 #define VIEWER_MOVING_H
 
+#include "relight/shadow/moving.h"
 #include "relit/moving_state.h"
 
 // The rest is made for the first view that needs it.

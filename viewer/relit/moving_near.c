@@ -1,6 +1,8 @@
 // moving_near.c - near lights whose shadows move, on the GPU
 #include "relit/moving.h"
 
+#include "relight/light/refit.h"
+#include "relight/shadow/moving.h"
 #include "relit/captured_uniforms.h"
 #include "relit/moving_parts.h"
 

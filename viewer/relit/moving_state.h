@@ -4,10 +4,10 @@
 
 #include "gl/program.h"
 #include "gl/target.h"
+#include "relight/shadow/moving.h"
 #include "relit/light_uniforms.h"
 
 #include <relume/format/coder.h>
-#include <relume/relight/shadow.h>
 
 // Of near lights (moving_near.c).
 struct moving_near {

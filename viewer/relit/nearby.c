@@ -4,6 +4,8 @@
 
 #include "cli/program/say.h"
 #include "gl/program.h"
+#include "relight/light/environment.h"
+#include "relight/light/refit.h"
 #include "relit/captured_uniforms.h"
 #include "relit/weights.h"
 

@@ -1,4 +1,9 @@
 // pack_source.c - a relume file that several threads read views from, one at a time
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
+#include "relight/frame/renderer_views.h"
+#include "relight/shadow/moving.h"
+#include "relight/view/view.h"
 #include "relit/pack_source.h"
 
 #include <relume/renderer.h>

@@ -1,8 +1,9 @@
 // passes.c - distant lights on the GPU: dot products of planes, look-ups of codebooks
 #include "common/vec.h"
+#include "format/coder/coding.h"
 #include "relit/books.h"
-#include "relit/moving.h"
 #include "relit/gl_relighter_parts.h"
+#include "relit/moving.h"
 #include "relit/weights.h"
 
 #include <stdlib.h>

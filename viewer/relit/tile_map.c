@@ -1,6 +1,7 @@
 // tile_map.c - a large view and its reduced levels as many small views, by one number
 #include "relit/tile_map.h"
 
+#include "format/pack/views.h"
 #include "relit/gl_relighter.h"
 
 static const int64_t LARGE = 64 << 20, MOST_PIXELS = 2 << 20;

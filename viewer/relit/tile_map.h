@@ -2,6 +2,8 @@
 #ifndef VIEWER_TILE_MAP_H
 #define VIEWER_TILE_MAP_H
 
+#include "format/pack/views.h"
+
 #include <relume/pack.h>
 
 // Pixels of a side; of the file's own tiles a whole number.

@@ -2,6 +2,7 @@
 #include "relit/weights.h"
 
 #include "common/vec.h"
+#include "format/coder/coding.h"
 
 #include <stdlib.h>
 #include <string.h>

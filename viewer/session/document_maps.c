@@ -5,6 +5,8 @@
 
 #include "app/light_list.h"
 #include "cli/program/say.h"
+#include "material/maps/maps.h"
+#include "relight/light/environment.h"
 
 #include <relume/exchange.h>
 #include <relume/material/edit.h>

@@ -4,6 +4,7 @@
 
 #include "cli/program/say.h"
 #include "common/vec.h"
+#include "relight/view/slab_set.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 
 #include "app/way.h"
 #include "cli/program/say.h"
+#include "format/coder/coding.h"
 
 #include <relume/exchange.h>
 

@@ -2,6 +2,9 @@
 #include "session/inspect.h"
 
 #include "app/orbit.h"
+#include "format/coder/coding.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -8,6 +8,7 @@
 #define VIEWER_INSPECT_H
 
 #include "app/app.h"
+#include "relight/view/view.h"
 #include "relit/loader.h"
 
 #include <relume/pack.h>

@@ -5,6 +5,8 @@
 #include "app/light_list.h"
 #include "app/way.h"
 #include "cli/program/say.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <relume/exchange.h>

@@ -4,6 +4,7 @@
 #include "app/keys.h"
 #include "cli/program/state_line.h"
 #include "common/vec.h"
+#include "relight/view/slab_set.h"
 
 #include <math.h>
 #include <stdio.h>

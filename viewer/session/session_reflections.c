@@ -3,10 +3,11 @@
 #include "session/edits_text.h"
 #include "session/session.h"
 
-#include "app/handles_say.h"
 #include "app/handles.h"
-#include "common/vec.h"
+#include "app/handles_say.h"
 #include "cli/program/say.h"
+#include "common/vec.h"
+#include "world/object/drawn_objects.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #include "transport/card_points.h"
 
 #include "cli/program/say.h"
+#include "world/object/object_points.h"
 
 #include <stdlib.h>
 #include <string.h>

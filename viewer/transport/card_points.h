@@ -5,8 +5,7 @@
 
 #include "gl/program.h"
 #include "gl/target.h"
-
-#include <relume/world/points.h>
+#include "world/object/object_points.h"
 
 // Of the scene, of the objects, and of the backs of what is lit from both sides.
 enum { CARD_SCENE, CARD_OBJECTS, CARD_BACKS, CARD_TREES };

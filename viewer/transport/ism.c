@@ -2,6 +2,7 @@
 #include "transport/ism.h"
 
 #include "cli/program/say.h"
+#include "world/object/object_points.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 // point_light.c - what trees of points send under a light, by compute passes
 #include "transport/point_light.h"
+#include "world/object/object_points.h"
 
 enum { AT_ONCE = 64 };  // of a work group
 

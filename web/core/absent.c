@@ -10,6 +10,7 @@
 #include "core/base/thread.h"
 #include "core/math/lsq.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/interpolant.h"
 #include "format/coder/pca.h"
 

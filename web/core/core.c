@@ -12,7 +12,10 @@
 #include <relume/light.h>
 
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
 #include "relight/light/grid.h"
+#include "relight/light/refit.h"
 
 #include <math.h>
 #include <stdlib.h>

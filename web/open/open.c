@@ -9,6 +9,8 @@
 #include "core/base/half.h"
 #include "core/base/memory.h"
 #include "core/math/scalar.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
 #include "site/publish/functions.h"
 #include "site/publish/scene.h"
 

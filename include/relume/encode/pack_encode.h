@@ -11,23 +11,6 @@
 extern "C" {
 #endif
 
-// The middle view relit from the front, panoramas from above: hand it in as `preview`, the contents
-// themselves (struct relume_pack_contents) as its user. Always in plain C, so that files do not
-// depend on the processor. RELUME_EIO, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb);
-
-// The reduced levels of `view`, made of its coefficients, for its `levels`; none where `pyramid`
-// asks for none. What is used of `contents` is what all of a file has in common, and of `params`
-// log, step, threads and scratch. RELUME_EUNFIT with a sentence where YES cannot be had: slabs,
-// luminance coefficients. RELUME_EIO, RELUME_ENOMEM. End with
-// relume_pack_levels_destroy.
-RELUME_RESULT relume_status relume_pack_reduce(struct relume_pack_levels *out,
-                                               const struct relume_pack_contents *contents,
-                                               const struct relume_pack_view *view,
-                                               enum relume_pyramid pyramid,
-                                               const struct relume_encode_params *params);
-RELUME_API void relume_pack_levels_destroy(struct relume_pack_levels *levels);
-
 // Encode every view of `capture` by `coder` and write the file `path`: relume_encode and
 // relume_pack_write in one call, temporary data beside `path`'s folder. `report` may be NULL.
 struct relume_pack_encode_params {
@@ -91,6 +74,7 @@ RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_
 RELUME_RESULT relume_status relume_pack_join(const char *const *parts, int count, const char *path,
                                              struct relume_encode_report *report,
                                              const struct relume_pack_params *params);
+
 #ifdef __cplusplus
 }
 #endif

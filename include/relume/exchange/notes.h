@@ -148,9 +148,6 @@ enum relume_notes_format {
     RELUME_NOTES_SVG,      // an overlay of the picture's size
     RELUME_NOTES_IIIF,     // annotation page of IIIF Presentation 3, on the canvas of `publish`
 };
-// "csv", "svg", "iiif". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_notes_format_parse(enum relume_notes_format *out,
-                                                      const char *name);
 // Write the file `path`. `canvas` is the canvas's address for IIIF, of an object its scene's or its
 // own; NULL: the name of the file. RELUME_EUNSUPPORTED (an overlay of an object), RELUME_EIO,
 // RELUME_ENOMEM.

@@ -51,18 +51,6 @@ RELUME_RESULT relume_status relume_codebook_train(relume_codebook **out, const f
                                                   const struct relume_codebook_params *params);
 RELUME_API void relume_codebook_destroy(relume_codebook **book);
 
-// What a codebook is; pointers belong to it.
-struct relume_codebook_info {
-    int codes, dim;
-    const float *vectors;  // [codes][dim]
-    int rounds;            // Lloyd rounds of the training (splitting start: of its last level)
-    double squared_error;  // sum over the training vectors, as the last round found it: before its
-                           // codes moved to their means
-    int moved;             // codes without vectors that were moved, over all rounds
-};
-// It belongs to the book.
-RELUME_API const struct relume_codebook_info *relume_codebook_info(const relume_codebook *book);
-
 // How nearest codes are looked for. Borrowed during the call.
 struct relume_codebook_assign_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -82,37 +70,7 @@ RELUME_RESULT relume_status
 relume_codebook_assign(const relume_codebook *book, const float *vectors, size_t n, uint16_t *index,
                        double *squared_error, const struct relume_codebook_assign_params *params);
 
-// ------------------------------------------------------------------ the codebooks of a file
-// The coefficients of a pixel are the sum of one vector from each book. A book's vectors cover all
-// planes (further books: what the books before have left), some planes (product form), or the
-// luminance or the chrominance of planes that come in R, G, B.
-
 enum { RELUME_MOST_BOOKS = 8 };
-
-// What the vectors of a book are.
-enum relume_book_kind {
-    RELUME_BOOK_PLANES = 0,  // number d of a vector belongs to plane first + d
-    RELUME_BOOK_LUMA,        // number d: Y of R, G, B in planes first + 3 d ..., each Y / sqrt 3
-    RELUME_BOOK_CHROMA,      // numbers 2 d, 2 d + 1: U and V, R = U / sqrt 2 + V / sqrt 6,
-                             // G = -2 V / sqrt 6, B = -U / sqrt 2 + V / sqrt 6
-};
-
-// A book as it is stored. Plain data, borrowed.
-struct relume_book {
-    enum relume_book_kind kind;
-    int first, last;              // planes [first, last)
-    int codes;                    // vectors, [1, 65536]
-    int dim;                      // numbers of a vector, as the kind says
-    enum relume_storage storage;  // of the numbers
-    const void *numbers;          // [dim][codes] of uint8_t, uint16_t or half bits
-    const float *scale, *offset;  // [dim]: number x scale + offset
-};
-
-// The numbers in a vector of a book of that kind for planes [first, last); 0 when there is no such
-// book: an empty range, or one that is not of whole R, G, B triples where the kind needs them.
-RELUME_API int relume_book_dim(enum relume_book_kind kind, int first, int last);
-// vectors[codes][planes]: the vectors as they are added up, 0 in planes that the book leaves alone.
-RELUME_API void relume_book_expand(float *vectors, const struct relume_book *book, int planes);
 
 // How coefficients are shared out among books.
 enum relume_book_split {
@@ -140,36 +98,6 @@ struct relume_books_params {  // zero in a field means its default
 };
 #define relume_books_params(...)                                                                   \
     (&(const struct relume_books_params){RELUME_SIZED(relume_books_params), __VA_ARGS__})
-
-// Books that belong together. Never changes. Thread-safety: safe.
-typedef struct relume_books relume_books;
-
-// Learn from the coefficients of `n` views by one coder, all of one storage, in which the numbers
-// will be stored. Stages and splits multiply to at most RELUME_MOST_BOOKS books. Returns
-// RELUME_EINVAL (params; several books for a luminance coder), RELUME_EUNFIT (more codes than
-// pixels), RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
-RELUME_RESULT relume_status relume_books_train(relume_books **out,
-                                               const relume_coefficients *const *views, int n,
-                                               const struct relume_books_params *params);
-RELUME_API void relume_books_destroy(relume_books **books);
-
-// What belongs to the books.
-struct relume_books_info {
-    int books, planes;
-    const struct relume_book *book;  // [books]
-    const float *const *vectors;     // [books] -> [codes][planes], as expanded
-    const int *codes;                // [books]
-};
-// It belongs to the books.
-RELUME_API const struct relume_books_info *relume_books_info(const relume_books *books);
-
-// The nearest vectors for every pixel of a view: index[books] -> [height][width], one book after
-// another. `store_rms` (may be NULL) receives what that cost, as in struct relume_encode_report.
-// RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. Only log, dither and threads of `params` are read.
-RELUME_RESULT relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
-                                                const relume_books *books,
-                                                const relume_coefficients *view,
-                                                const struct relume_books_params *params);
 
 #ifdef __cplusplus
 }

@@ -24,9 +24,6 @@ struct relume_response {
 // `code` in [0, 1]; others are clamped.
 RELUME_API float relume_response_decode(const struct relume_response *response, int channel,
                                         float code);
-// The inverse, in [0, 1].
-RELUME_API float relume_response_encode(const struct relume_response *response, int channel,
-                                        float exposure);
 // A known curve as a response.
 RELUME_API void relume_response_of(struct relume_response *out, struct relume_transfer transfer);
 
@@ -69,14 +66,6 @@ enum relume_merge_weights {
     RELUME_MERGE_HAT,         // Debevec, Malik 1997, Eq. 4
     RELUME_MERGE_GAUSSIAN,    // Robertson, Borman, Stevenson 1999: exp(-4 (c - 1/2)^2 / (1/2)^2)
 };
-// "spline", "hat", "gaussian"; NULL when out of range.
-RELUME_API const char *relume_merge_weights_name(enum relume_merge_weights weights);
-// RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_merge_weights_parse(enum relume_merge_weights *out,
-                                                       const char *name);
-// The weight of a code in an exposure that is the longest, the shortest, or neither.
-RELUME_API float relume_merge_weight(enum relume_merge_weights weights, float code, bool longest,
-                                     bool shortest);
 
 // How one exposure agrees with the merge of the others, over pixels that both resolve (codes in
 // (0.05, 0.95)); NaN where there are none.

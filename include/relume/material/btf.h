@@ -16,8 +16,6 @@
 extern "C" {
 #endif
 
-// ---------------------------------------------------------------- directions
-
 // Rings about the z axis. Constant; a NULL-terminated list of all is relume_btf_sets.
 struct relume_btf_set {
     const char *name;
@@ -30,8 +28,6 @@ struct relume_btf_set {
         int count;                        // at phi = first_phi_deg + 360 i / count
     } ring[10];                           // [rings]
 };
-// All sets; NULL ends the list.
-extern RELUME_API const struct relume_btf_set *const relume_btf_sets[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_btf_set *relume_btf_set_find(const char *name);
 // Fill `out[set->count]`, ring by ring from the pole.
@@ -45,29 +41,6 @@ RELUME_RESULT relume_status relume_direction_mesh_create(relume_direction_mesh *
                                                          const struct relume_vec3 *directions,
                                                          int n, const struct relume_log *log);
 RELUME_API void relume_direction_mesh_destroy(relume_direction_mesh **mesh);
-
-// Which directions replace one, and how much each counts: barycentric weights, all > 0, sum 1.
-struct relume_direction_blend {
-    int count;     // 1 to 3
-    int index[3];  // numbers of directions
-    double weight[3];
-    // The direction that they replace: the one asked for, or, below the lowest directions, the
-    // one of its azimuth on their rim.
-    struct relume_vec3 direction;
-    double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
-    // Of the sum of weight x direction, at most 1: interpolation multiplies what is linear in the
-    // direction, as n.l, by this length.
-    double length;
-};
-// The three around a unit direction.
-RELUME_API struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *mesh,
-                                                                  struct relume_vec3 d);
-// The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
-// up themselves: corner n is the nadir, which is no measured direction. They belong to the mesh.
-RELUME_API const int (*relume_direction_mesh_triangles(const relume_direction_mesh *mesh,
-                                                       int *n))[3];
-
-// ---------------------------------------------------------------- the measured values
 
 // Half-float values, mapped from their file, so that they need not fit into memory.
 // Thread-safety: safe while nobody stores.
@@ -126,10 +99,6 @@ RELUME_API void relume_btf_destroy(relume_btf **btf);
 RELUME_API const struct relume_btf_info *relume_btf_info(const relume_btf *btf);
 // Bytes of its half-float values: 6 a texel and pair of directions.
 RELUME_API uint64_t relume_btf_bytes(int width, int height, int views, int lights);
-// One picture as halfs [height][width][3], row 0 at the top.
-RELUME_API const uint16_t *relume_btf_picture(const relume_btf *btf, int view, int light);
-// Replace one picture of a created BTF; values are clipped to what a half holds.
-RELUME_API void relume_btf_store(relume_btf *btf, int view, int light, const float *rgb);
 
 // Some views and lights of a BTF, which must outlive the part. RELUME_EUNFIT when too few are left
 // to interpolate, RELUME_ENOMEM.
@@ -137,22 +106,10 @@ RELUME_RESULT relume_status relume_btf_part(relume_btf **out, const relume_btf *
                                             const int *views, int view_count, const int *lights,
                                             int light_count, const struct relume_log *log);
 
-// A BTF of half the sides: every texel the mean of two by two (three at an odd end; a side of 1
-// stays), without ground truth. RELUME_ENOMEM, RELUME_ESYSTEM.
-RELUME_RESULT relume_status relume_btf_halve(relume_btf **out, const relume_btf *btf,
-                                             const struct relume_btf_params *params);
-
 // The reference: three views times three lights of the measured values, weighted. Below the lowest
 // lights the value falls with the cosine to 0 at the horizon; views and lights below it give 0.
 RELUME_API void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3 view,
                                     struct relume_vec3 light, float rgb[3]);
-
-// The value at (x, y) in texels from the upper left corner (centres at +0.5) of a sample that is
-// repeated without end: bilinear, or of the nearest texel.
-RELUME_API void relume_btf_sample(const relume_btf *btf, double x, double y, bool bilinear,
-                                  struct relume_vec3 view, struct relume_vec3 light, float rgb[3]);
-
-// ---------------------------------------------------------------- models
 
 // A way to compress a BTF. Constant; a NULL-terminated list of all is relume_btf_models.
 struct relume_btf_model;
@@ -265,41 +222,10 @@ struct relume_gbrdf_plant_params {  // zero in a field means its default
 RELUME_RESULT relume_status relume_gbrdf_plant(relume_btf_fitted **out,
                                                const struct relume_gbrdf_plant_params *params);
 
-// A material of pictures in place of measurements, in the terms of glTF 2.0 (Khronos 2021, appendix
-// B). Pictures are borrowed during the call and repeat like samples; beyond 2048 texels on a side
-// they are reduced, of two the smaller one grows. Values are taken for [0, 1], NaN for 0.
-struct relume_btf_paint_params {
-    size_t struct_size;  // filled by the macro (base.h)
-    const struct relume_log *log;
-    const struct relume_image *colour;   // linear, three channels; NULL: white
-    const struct relume_image *surface;  // green of roughness, blue of metal, likewise; NULL: all
-    float factor[3];                     // times the colour, [0, 1]
-    float roughness, metallic;           // times what the picture says, [0, 1]
-    int threads;                         // default: all cores
-    // Normals as glTF paints them: (n + 1) / 2, x to the right, y up, z off the surface. NULL: none
-    const struct relume_image *normals;
-    float bump;  // times x and y of these; default 1
-};
-#define relume_btf_paint_params(...)                                                               \
-    (&(const struct relume_btf_paint_params){RELUME_SIZED(relume_btf_paint_params), __VA_ARGS__})
-// The model `lit` where nothing shines and there are no normals, else `painted`, glTF's
-// microfacets, which is for drawing alone: it is neither fitted nor saved. With all levels of
-// detail. The caller destroys `*out`. RELUME_EINVAL for another number of channels, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_btf_paint(relume_btf_fitted **out,
-                                             const struct relume_btf_paint_params *params);
-
-// A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
-RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,
-                                                            int level);
-
 // The same question as relume_btf_evaluate.
 RELUME_API void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
                                            struct relume_vec3 view, struct relume_vec3 light,
                                            float rgb[3]);
-// The same question as relume_btf_sample.
-RELUME_API void relume_btf_fitted_sample(const relume_btf_fitted *fitted, double x, double y,
-                                         bool bilinear, struct relume_vec3 view,
-                                         struct relume_vec3 light, float rgb[3]);
 
 // What a model keeps, for clients that evaluate it themselves: the arrays of its folder
 // (docs/btf.md). Pointers belong to the model.

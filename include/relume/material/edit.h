@@ -20,8 +20,6 @@
 extern "C" {
 #endif
 
-// ---------------------------------------------------------------- operations
-
 // What can be done. Constant; a NULL-terminated list of all is relume_edit_operations.
 struct relume_edit_operation;
 // All operations; NULL ends the list.
@@ -31,19 +29,10 @@ RELUME_API const struct relume_edit_operation *relume_edit_operation_find(const 
 // As people write it: emboss, engrave, roughness, tint, channels, swap, turn, add-material;
 // constant.
 RELUME_API const char *relume_edit_operation_name(const struct relume_edit_operation *operation);
-// One line for help texts; constant.
-RELUME_API const char *relume_edit_operation_summary(const struct relume_edit_operation *operation);
-// Whether maps have what it changes; g-BRDFs have all of it.
-RELUME_API bool relume_edit_operation_on_maps(const struct relume_edit_operation *operation);
 // The name of its parameter number `i`, NULL beyond the last; the first is the one that has no
 // default.
 RELUME_API const char *relume_edit_operation_parameter(
     const struct relume_edit_operation *operation, int i);
-
-// The longest side of a drawing or mask that a list keeps, pixels; larger ones are reduced.
-enum { RELUME_EDIT_MOST_SIDE = 1024 };
-// Operations of a list.
-enum { RELUME_EDIT_MOST = 256 };
 
 // One operation; of the parameters those of the operation count. "Width" is that of the sample or
 // the picture; materials are told by their labels, counted from 0. Thread-safety: plain data.
@@ -84,8 +73,6 @@ RELUME_API void relume_edit_text(const struct relume_edit *edit, char *text, siz
 // Free drawing and mask.
 RELUME_API void relume_edit_destroy(struct relume_edit *edit);
 
-// ---------------------------------------------------------------- lists
-
 // A list of edits of one g-BRDF or folder of maps. Thread-safety: one thread at a time.
 typedef struct relume_edits relume_edits;
 
@@ -116,8 +103,6 @@ RELUME_API int relume_edits_count(const relume_edits *edits);
 RELUME_API int relume_edits_undone(const relume_edits *edits);
 // Number `i` from 0, in the order in which they apply; belongs to the list.
 RELUME_API const struct relume_edit *relume_edits_get(const relume_edits *edits, int i);
-
-// ---------------------------------------------------------------- g-BRDFs
 
 // Of what a model keeps.
 RELUME_API uint64_t relume_btf_fitted_fingerprint(const relume_btf_fitted *fitted);
@@ -151,8 +136,6 @@ RELUME_RESULT relume_status relume_gbrdf_make(relume_btf_fitted **out,
                                               const struct relume_image *colour,
                                               const struct relume_image *height,
                                               const struct relume_gbrdf_make_params *params);
-
-// ---------------------------------------------------------------- maps
 
 // Of their pictures.
 RELUME_API uint64_t relume_maps_fingerprint(const struct relume_maps *maps);

@@ -103,21 +103,6 @@ RELUME_RESULT relume_status relume_maps_fit(struct relume_maps *out, const relum
 RELUME_RESULT relume_status relume_maps_fit_pack(struct relume_maps *out, relume_pack *pack,
                                                  const struct relume_maps_params *params);
 
-// The maps under one light of value 1 from `direction` (any length but 0), linear, of the
-// photographs' brightness: what a viewer of glTF shows. Three channels, the caller destroys it.
-// RELUME_EINVAL, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_maps_relight(struct relume_image *out,
-                                                const struct relume_maps *maps,
-                                                struct relume_vec3 direction, int threads);
-
-// Ambient occlusion of a height map whose pixels are `pixel` wide, both in the same unit: the
-// cosine-weighted share of the hemisphere over the surface that the relief within an eighth of the
-// picture's longer side leaves free (Jimenez et al. 2016, Eq. 7, horizons in 16 half planes). One
-// channel; the caller destroys it. RELUME_EINVAL, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_height_occlusion(struct relume_image *out,
-                                                    const struct relume_image *height, double pixel,
-                                                    int threads);
-
 // What is written of maps.
 struct relume_maps_write_params {
     size_t struct_size;  // filled by the macro (base.h)

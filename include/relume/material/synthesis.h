@@ -94,9 +94,6 @@ enum relume_grow_method {
     RELUME_GROW_PATCH = 0,  // squares joined along the cuts that show least
     RELUME_GROW_PIXEL,      // texel by texel, from coarse to fine, by what stands around
 };
-// "patch", "pixel". RELUME_EINVAL when `name` is neither.
-RELUME_RESULT relume_status relume_grow_method_parse(enum relume_grow_method *out,
-                                                     const char *name);
 
 struct relume_grow_params {  // zero in a field means its default
     size_t struct_size;      // filled by the macro (base.h)

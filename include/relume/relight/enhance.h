@@ -29,13 +29,6 @@ enum relume_pass {
 RELUME_API const char *relume_pass_name(enum relume_pass pass);
 // RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_pass_parse(enum relume_pass *out, const char *name);
-// Whether the pass needs to know normals.
-RELUME_API bool relume_pass_needs_normals(enum relume_pass pass);
-// Whether the pass is scaled to the picture.
-RELUME_API bool relume_pass_needs_range(enum relume_pass pass);
-
-// The default of `gain`.
-#define RELUME_PASS_GAIN 2.0f
 
 // What a pass scales to the picture, luminances.
 struct relume_pass_range {
@@ -64,23 +57,6 @@ struct relume_pass_params {
 };
 #define relume_pass_params(...)                                                                    \
     (&(const struct relume_pass_params){RELUME_SIZED(relume_pass_params), __VA_ARGS__})
-
-// Replace `image`, a view relit by `lights`, by what `pass` shows of it; linear, three channels.
-// `normals` may be NULL where the pass needs none. Only directional lights are enhanced; what
-// others add stays as it is. RELUME_EINVAL for sizes that disagree, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_pass_apply(struct relume_image *image, enum relume_pass pass,
-                                              const struct relume_normals *normals,
-                                              const struct relume_light *lights, int n,
-                                              const struct relume_pass_params *params);
-
-// Every so many pixels of a picture of that size, along and down, are measured.
-RELUME_API int relume_pass_step(int width, int height);
-// What `pass` would scale of `image`, relit by `lights`, whose normals' albedo is given (NULL where
-// the pass needs none). A picture of every relume_pass_step-th pixel alone has the same range.
-// RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_pass_measure(
-    struct relume_pass_range *out, const struct relume_image *image, enum relume_pass pass,
-    const struct relume_image *albedo, const struct relume_light *lights, int n, float gain);
 
 // `normal` less its mean over (2 radius + 1)^2 pixels: what unsharp exaggerates. `out` is created.
 // RELUME_ENOMEM.

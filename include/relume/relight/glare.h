@@ -22,14 +22,6 @@ enum relume_glare_border {
     RELUME_GLARE_CLAMP,     // the border's pixels go on
     RELUME_GLARE_PERIODIC,  // the frame repeats
 };
-// RELUME_EINVAL when `name` is none of relume_glare_mode_names.
-RELUME_RESULT relume_status relume_glare_mode_parse(enum relume_glare_mode *out, const char *name);
-// RELUME_EINVAL when `name` is none of relume_glare_border_names.
-RELUME_RESULT relume_status relume_glare_border_parse(enum relume_glare_border *out,
-                                                      const char *name);
-RELUME_API const char *const *relume_glare_mode_names(void);  // by number, then NULL
-// All names; NULL ends the list.
-RELUME_API const char *const *relume_glare_border_names(void);
 
 // How a glare pattern is laid over a frame. Borrowed during the call.
 struct relume_glare_params {
@@ -49,32 +41,6 @@ struct relume_glare_params {
 };
 #define relume_glare_params(...)                                                                   \
     (&(const struct relume_glare_params){RELUME_SIZED(relume_glare_params), __VA_ARGS__})
-
-// The angle of one pixel in the middle of a frame of that width.
-RELUME_API double relume_glare_pixel(double fov_deg, int width);
-
-// The pattern at the frame's scale, odd size, every channel summing to 1: that of `psf` resampled
-// from psf->step to `pixel` radians over `magnify`, and the CIE veil beyond it, which
-// is the observer's up to 7.5 degrees and fades out until 12.5. The subject that
-// was seen last gives the veil's age and pigment. RELUME_EINVAL, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_glare_kernel(struct relume_image *out, const relume_psf *psf,
-                                                double pixel,
-                                                const struct relume_glare_params *params);
-
-// That veil from where a pattern fades out to RELUME_VEIL_DEG, for kernels made elsewhere: pattern
-// (1 - share) + light * a pixel's solid angle, and all of it divided by its sum.
-#define RELUME_VEIL_DEG 12.5
-enum { RELUME_VEIL_STEPS = 2048 };
-// Light that is scattered farther than the pattern reaches, by angle. Plain data.
-struct relume_veil {
-    double step;                         // radians from number to number
-    float light[RELUME_VEIL_STEPS + 2];  // per steradian at that angle, linear between; the last
-                                         // two are 0
-    double share;                        // of all light; 0: the pattern reaches as far itself
-};
-// The veil around that pattern: age in years, pigment of the iris as in struct relume_subject.
-RELUME_API void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *pattern,
-                            double age, double pigment);
 
 // Work on frames of one size keeps what does not change: plans, and the spectrum of a frame that
 // rests. Thread-safety: one thread at a time.

@@ -26,8 +26,6 @@ extern RELUME_API const struct relume_tone relume_tone_filmic;    // of each cha
 extern RELUME_API const struct relume_tone relume_tone_gamma;     // 2.2 in place of the sRGB curve
 // All of them, ending with NULL; the place in the list is what a viewer may keep.
 extern RELUME_API const struct relume_tone *const relume_tones[];
-// NULL when there is none of that name.
-RELUME_API const struct relume_tone *relume_tone_find(const char *name);
 
 // How linear light becomes what a screen shows. Borrowed during the call.
 struct relume_tone_params {

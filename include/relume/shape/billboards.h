@@ -18,8 +18,6 @@
 extern "C" {
 #endif
 
-#define RELUME_BILLBOARD_NONE UINT32_MAX
-
 // What a texel shows, at the middle of the part of it that is covered.
 struct relume_billboard_texel {
     float coverage;     // the covered share of its area, [0, 1]
@@ -59,9 +57,6 @@ enum relume_billboards_method {
     // fewer and larger rectangles, whatever the normals.
     RELUME_BILLBOARDS_GREEDY,
 };
-// "clusters" and "greedy". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_billboards_method_parse(enum relume_billboards_method *out,
-                                                           const char *name);
 
 // Lengths are shares of the longest side of the box about the mesh.
 struct relume_billboards_params {
@@ -96,20 +91,6 @@ RELUME_RESULT relume_status relume_billboards_sheet(struct relume_mesh *quads,
                                                     const struct relume_mesh *mesh,
                                                     const struct relume_image *colour,
                                                     const struct relume_log *log);
-
-// ---------------------------------------------------------------- how much of it is needed
-
-// How many pixels an error of length `error` is seen as from `distance` away, by a view of
-// `view_rad` upright over `height` pixels (of the middle of the view; Meseth 2008, chapter 6).
-// Infinite for a distance of 0.
-RELUME_API double relume_lod_pixels(double error, double distance, double view_rad, int height);
-// The coarsest of `n` levels whose errors ascend that is seen within `pixels`; 0 where none is.
-RELUME_API int relume_lod_choose(const double *error, int n, double pixels, double distance,
-                                 double view_rad, int height);
-// How urgent it is to turn a level of error `current` into one of error `target`, both above 0:
-// max(current / target, target / current), at least 1; of what is not seen 1 - 1 / that, below 1
-// (Meseth 2008, chapter 6).
-RELUME_API double relume_lod_priority(double current, double target, bool seen);
 
 #ifdef __cplusplus
 }

@@ -14,8 +14,6 @@
 extern "C" {
 #endif
 
-// ---------------------------------------------------------------- stimuli and the page
-
 // One way in which all scenes are shown.
 struct relume_study_condition {
     const char *name;    // of letters, digits, '-', '_' and '.'
@@ -51,8 +49,6 @@ RELUME_RESULT relume_status relume_study_make(const char *folder,
 // left, right, chosen, seconds. Of `params` the log alone counts. Statuses as above.
 RELUME_RESULT relume_status relume_study_page(const char *page, const char *folder, int subject,
                                               const struct relume_study_params *params);
-
-// ---------------------------------------------------------------- what the answers say
 
 // How many of the pairs each condition won, of one question. Free with relume_study_free.
 struct relume_study_pairs {
@@ -90,11 +86,6 @@ RELUME_RESULT relume_status relume_study_analyse(struct relume_study_result *out
                                                  const char *const *path, int paths,
                                                  const struct relume_log *log);
 RELUME_API void relume_study_free(struct relume_study_result *result);
-
-// The probability that a chi squared of that many degrees of freedom, >= 1, is larger.
-RELUME_API double relume_study_chi_squared_p(double chi_squared, int freedom);
-// The z whose normal distribution is p, in (0, 1).
-RELUME_API double relume_study_normal_z(double p);
 
 #ifdef __cplusplus
 }

@@ -53,8 +53,6 @@ enum relume_ring {
     RELUME_RING_8,
     RELUME_RING_CUBE,  // four, and one from above whose pictures have -z at their top
 };
-// "4", "6", "8", "cube". RELUME_EINVAL when `name` is none of these.
-RELUME_RESULT relume_status relume_ring_parse(enum relume_ring *out, const char *name);
 
 // What is photographed and how. All that is pointed at is borrowed during the call.
 struct relume_synth_params {
@@ -105,8 +103,6 @@ extern RELUME_API const struct relume_btf_material *const relume_btf_materials[]
 RELUME_API const struct relume_btf_material *relume_btf_material_find(const char *name);
 // As people write it; constant.
 RELUME_API const char *relume_btf_material_name(const struct relume_btf_material *material);
-// One line for help texts; constant.
-RELUME_API const char *relume_btf_material_summary(const struct relume_btf_material *material);
 
 // What is wrong with the apparatus; all zero: nothing. Each photograph, that is each pair of view
 // and light, has its own error of place and of brightness. Thread-safety: plain data.

@@ -75,10 +75,6 @@ RELUME_RESULT relume_status relume_tableau_frame(struct relume_image *out, relum
                                                  const struct relume_camera *camera,
                                                  const struct relume_light *lights, int n,
                                                  const struct relume_render_params *params);
-// Which entity each pixel shows, one channel: its number in relume_tableau_info, -1 for none. Of
-// captures, background is none. `*out` is created. Errors as above.
-RELUME_RESULT relume_status relume_tableau_which(struct relume_image *out, relume_tableau *tableau,
-                                                 const struct relume_camera *camera);
 
 #ifdef __cplusplus
 }

@@ -27,15 +27,10 @@ extern RELUME_API const struct relume_transport *const relume_transports[];
 RELUME_API const struct relume_transport *relume_transport_find(const char *name);
 // As people write it; constant.
 RELUME_API const char *relume_transport_name(const struct relume_transport *transport);
-// One line for help texts; constant.
-RELUME_API const char *relume_transport_summary(const struct relume_transport *transport);
 // Directions that light is gathered from at each pixel, where nothing else is asked for; 0: none.
 RELUME_API int relume_transport_samples(const struct relume_transport *transport);
 // Pixels from one that gathers to the next, where nothing else is asked for; 0: always each.
 RELUME_API int relume_transport_spacing(const struct relume_transport *transport);
-// The version of OpenGL, times ten, with which relume-view gathers this way by passes over each
-// frame of a panorama with depth; 0: it has none for it.
-RELUME_API int relume_transport_passes(const struct relume_transport *transport);
 // Further cameras that look at the objects, where nothing else is asked for; -1: it has none.
 RELUME_API int relume_transport_cameras(const struct relume_transport *transport);
 

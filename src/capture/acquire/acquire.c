@@ -1,12 +1,14 @@
 // acquire.c - the steps from photographs to a capture folder
 #include "capture/acquire/acquire.h"
 
-#include "core/base/tree.h"
+#include "capture/acquire/photometric.h"
+#include "capture/acquire/refine.h"
 #include "core/base/log.h"
-#include "core/base/params.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
 #include "core/base/outfile.h"
+#include "core/base/params.h"
+#include "core/base/tree.h"
 #include "core/math/sort.h"
 
 #include <ctype.h>

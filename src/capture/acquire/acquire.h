@@ -2,6 +2,7 @@
 #ifndef ACQUIRE_ACQUIRE_H
 #define ACQUIRE_ACQUIRE_H
 
+#include "capture/acquire/ball.h"
 #include "capture/acquire/sha256.h"
 #include "core/base/outdir.h"
 #include "core/math/vec.h"

@@ -1,6 +1,7 @@
 // acquire_flat.c - uneven light, vignetting and the lamp's colour, taken out of the photographs
 #include "capture/acquire/acquire.h"
 
+#include "capture/acquire/chart.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 

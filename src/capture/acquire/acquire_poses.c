@@ -83,8 +83,8 @@ static relume_status tell_apart(const struct acquisition *s, const struct posed_
                     s->p.lights, lamps, relume_plural(lamps), s->photographs.count);
 }
 
-static void place(struct acquisition *s, const struct posed_camera *object,
-                  const struct posed_camera *const *lamp, double distance)
+static void place_object(struct acquisition *s, const struct posed_camera *object,
+                         const struct posed_camera *const *lamp, double distance)
 {
     const double eye = 2.0 * object->focal[0] / object->width, scale = eye / distance;
     s->p.fov_deg = 2.0 * atan(1.0 / eye) * 180.0 / M_PI;
@@ -114,7 +114,7 @@ relume_status acquire_lights_from_poses(struct acquisition *s)
                           "distance",
                           s->p.lights, object->name);
     if (!status)
-        place(s, object, lamp, distance);
+        place_object(s, object, lamp, distance);
     mem_free(lamp);
     posed_model_free(&model);
     return status;

@@ -1,6 +1,7 @@
 // acquire_products.c - pictures of the surface that a capture is asked for: normals, albedo, height
 #include "capture/acquire/acquire.h"
 
+#include "capture/acquire/photometric.h"
 #include "core/base/log.h"
 
 static relume_status save(const struct acquisition *s, const char *path,

@@ -172,7 +172,7 @@ static relume_status take_ball(struct acquisition *s, int i)
     return status;
 }
 
-static relume_status take(struct acquisition *s, int i, struct relume_image *image)
+static relume_status take_photograph(struct acquisition *s, int i, struct relume_image *image)
 {
     struct shot *shot = &s->shot[i];
     relume_status status = acquire_check_size(s, image, shot->path, s->width, s->height);
@@ -210,7 +210,7 @@ relume_status acquire_read(struct acquisition *s)
         snprintf(shot->name, sizeof shot->name, "light%04d.exr", done);
         status = acquire_load(&image, &shot->notes, s, shot->path, s->p.transfer);
         if (!status)
-            status = take(s, i, &image);
+            status = take_photograph(s, i, &image);
         relume_image_destroy(&image);
         if (relume_status_is_input(status) && s->p.skip_bad)
             status = acquire_drop(s, i, "cannot be used");

@@ -2,6 +2,7 @@
 // the surface: 72 photographs of 24 megapixels would take an hour of one core
 #include "capture/acquire/acquire.h"
 
+#include "capture/acquire/photometric.h"
 #include "core/base/memory.h"
 
 #include <string.h>

@@ -2,6 +2,7 @@
 // become
 #include "capture/acquire/acquire.h"
 
+#include "capture/acquire/chart.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 

@@ -6,6 +6,66 @@
 
 #include <relume/capture/ball.h>
 
+// How the camera saw the ball. World axes: the camera looks along -z, image up is +y.
+struct relume_ball_camera {
+    int width, height;  // of the photographs
+    double focal_px;    // focal length in pixels; 0: orthographic (far away)
+};
+
+// How balls are looked for and measured. Borrowed during the call; lengths in pixels.
+struct relume_ball_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    const struct relume_image *mask;  // one channel, above 0.5 where the ball is; or NULL
+    const struct relume_image *peak;  // the brightest value each pixel ever has, one channel; or
+                                      // NULL: mirror balls have a highlight, others are no balls
+    double smallest, largest;         // radius as share of the image's shorter side; default 0.015
+                                      // and 0.6
+};
+#define relume_ball_params(...)                                                                    \
+    (&(const struct relume_ball_params){RELUME_SIZED(relume_ball_params), __VA_ARGS__})
+
+// The ball with this outline.
+struct relume_ball relume_ball_outlined(double x, double y, double radius,
+                                        const struct relume_ball_camera *camera);
+
+// Find `count` balls in `mean`, the geometric mean of photographs under all lights (linear,
+// one channel: highlights, which move, hardly show in it),
+// from left to right: circles of edges (Hough 1962, voted along the gradient), each refined by a
+// robust fit to the edge along its radii. With a mask its border is fitted instead. RELUME_EUNFIT
+// with a sentence where fewer can be seen, RELUME_ENOMEM.
+relume_status relume_ball_find(struct relume_ball *out, int count, const struct relume_image *mean,
+                               const struct relume_ball_camera *camera,
+                               const struct relume_ball_params *params);
+// The same, up to `most` circles that may be balls and do not overlap, the roundest first; *found
+// of them, perhaps none. Which one is a ball is for its highlights to say. RELUME_ENOMEM.
+relume_status relume_ball_candidates(struct relume_ball *out, int most, int *found,
+                                     const struct relume_image *mean,
+                                     const struct relume_ball_camera *camera,
+                                     const struct relume_ball_params *params);
+
+// A few words for people, never NULL.
+const char *relume_ball_finding_text(enum relume_ball_finding finding);
+
+// The light of one photograph (linear, of the camera's size). RELUME_ENOMEM.
+relume_status relume_ball_mirror(struct relume_ball_light *out, const struct relume_ball *ball,
+                                 const struct relume_ball_camera *camera,
+                                 const struct relume_image *photograph);
+// The ball is white (reflects all light) and matte. Shadow, highlights and what shines on it from
+// elsewhere are left out by reweighting.
+relume_status relume_ball_matte(struct relume_ball_light *out, const struct relume_ball *ball,
+                                const struct relume_ball_camera *camera,
+                                const struct relume_image *photograph);
+
+// Unit vector from the eye through (x, y).
+struct relume_vec3 relume_ball_ray(const struct relume_ball_camera *camera, double x, double y);
+
+// The point nearest to `n` lines from `origin` along unit `direction`, by least squares, and its
+// standard error. RELUME_EUNFIT when the lines are nearly parallel or fewer than 2.
+relume_status relume_light_triangulate(struct relume_vec3 *position, double *sigma,
+                                       const struct relume_vec3 *origin,
+                                       const struct relume_vec3 *direction, int n);
+
 struct ball_point {
     double x, y;
     double weight;

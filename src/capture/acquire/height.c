@@ -10,6 +10,7 @@
 // are known; else 0.
 #include <relume/capture/photometric.h>
 
+#include "capture/acquire/photometric.h"
 #include "capture/acquire/stepped.h"
 #include "core/base/params.h"
 #include "core/math/fft.h"

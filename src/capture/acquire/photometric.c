@@ -1,7 +1,9 @@
 // photometric.c - normals and albedo from the photographs of a view, band by band
 #include <relume/capture/photometric.h>
 
+#include "capture/acquire/photometric.h"
 #include "capture/manifest/near_view.h"
+#include "capture/manifest/reflectance_table.h"
 #include "capture/stereo/field.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -9,6 +9,8 @@
 #include <relume/capture/acquire.h>
 
 #include "capture/acquire/integrable.h"
+#include "capture/acquire/refine.h"
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -60,7 +62,8 @@ static bool is_useful(const float *value, int lights)
     return lit >= 4 && 2 * lit >= lights;
 }
 
-static int take(struct refiner *r, const float *band, size_t stride, size_t at, float (*white)[3])
+static int take_rows(struct refiner *r, const float *band, size_t stride, size_t at,
+                     float (*white)[3])
 {
     float *to = r->value + r->pixels * (size_t)r->lights;
     for (int i = 0; i < r->lights; i++) {
@@ -102,7 +105,7 @@ static relume_status read_rows(struct refiner *r, const struct relume_image *mas
             r->slot[y / step * (size_t)r->columns + x / step] =
                 mask->data && mask->data[y * width + x] <= 0.5f
                     ? -1
-                    : take(r, band, 3 * width, x, white);
+                    : take_rows(r, band, 3 * width, x, white);
     }
     relume_table_destroy(&table);
     return status;

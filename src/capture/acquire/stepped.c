@@ -14,6 +14,7 @@
 // and with the confidence of the normals.
 #include "capture/acquire/stepped.h"
 
+#include "capture/acquire/photometric.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"

@@ -2,6 +2,8 @@
 #ifndef ACQUIRE_STEPPED_H
 #define ACQUIRE_STEPPED_H
 
+#include "capture/acquire/photometric.h"
+
 #include <relume/capture/photometric.h>
 
 // The slopes to the right (axis 0) and down (axis 1), at most STEEPEST; false where the normal is

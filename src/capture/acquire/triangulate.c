@@ -4,6 +4,7 @@
 // covariance is the inverse of that matrix times the variance of the distances.
 #include <relume/capture/ball.h>
 
+#include "capture/acquire/ball.h"
 #include "core/math/lsq.h"
 #include "core/math/vec.h"
 

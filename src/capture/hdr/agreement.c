@@ -3,6 +3,7 @@
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "image/image/merge_weight.h"
 
 #include <math.h>
 

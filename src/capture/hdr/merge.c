@@ -10,6 +10,7 @@
 #include "core/base/names.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
+#include "image/image/merge_weight.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,20 +19,6 @@
 static const float least_total = 0.01f;  // below, all codes lie within 4 % of an end
 static const float unlike = 0.05f;       // codes that differ by more than noise
 enum { BAND = 16, STEPS = 255 * 4, LOGS = 255 * 256 };
-
-static const char *const names[] = {"spline", "hat", "gaussian"};
-
-const char *relume_merge_weights_name(enum relume_merge_weights weights)
-{
-    return (unsigned)weights < sizeof names / sizeof *names ? names[weights] : NULL;
-}
-
-relume_status relume_merge_weights_parse(enum relume_merge_weights *out, const char *name)
-{
-    const int i = name_find(name, names, sizeof names / sizeof *names);
-    *out = (enum relume_merge_weights)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
 
 static float spline(float x)
 {

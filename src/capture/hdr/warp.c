@@ -16,7 +16,7 @@ struct warp {
 };
 
 // Place (x, y) of the anchor in the image, pixels with centres at +0.5.
-static void place(const struct warp *w, double x, double y, double at[2])
+static void place_pixel(const struct warp *w, double x, double y, double at[2])
 {
     if (w->field) {
         double d[2];
@@ -52,7 +52,7 @@ static void warp_row(void *context, size_t y, int worker)
     const size_t width = (size_t)w->out->width, n = (size_t)w->out->channels;
     for (size_t x = 0; x < width; x++) {
         double at[2];
-        place(w, (double)x + 0.5, (double)y + 0.5, at);
+        place_pixel(w, (double)x + 0.5, (double)y + 0.5, at);
         sample(w->image, at[0], at[1], w->out->data + (y * width + x) * n);
         if (w->valid)
             w->valid->data[y * width + x] = at[0] >= 0.0 && at[1] >= 0.0 &&
@@ -60,7 +60,7 @@ static void warp_row(void *context, size_t y, int worker)
     }
 }
 
-static relume_status run(struct warp *w, const struct relume_align_params *params)
+static relume_status warp_all(struct warp *w, const struct relume_align_params *params)
 {
     *w->out = (struct relume_image){0};
     if (w->valid)
@@ -81,7 +81,7 @@ relume_status relume_warp_displacements(struct relume_image *out, struct relume_
                                         const struct relume_displacements *d,
                                         const struct relume_align_params *params)
 {
-    return run(&(struct warp){image, d, NULL, out, valid}, params);
+    return warp_all(&(struct warp){image, d, NULL, out, valid}, params);
 }
 
 relume_status relume_warp_homography(struct relume_image *out, struct relume_image *valid,
@@ -89,5 +89,5 @@ relume_status relume_warp_homography(struct relume_image *out, struct relume_ima
                                      const struct relume_homography *h,
                                      const struct relume_align_params *params)
 {
-    return run(&(struct warp){image, NULL, h, out, valid}, params);
+    return warp_all(&(struct warp){image, NULL, h, out, valid}, params);
 }

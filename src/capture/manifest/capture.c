@@ -1,10 +1,12 @@
 // capture.c - an opened capture: what it is, its images, depth and masks
 #include "capture/manifest/capture.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/scratch.h"
 #include "core/math/vec.h"
+#include "image/geometry/geometry.h"
 
 #include <relume/image/response.h>
 #include <stdio.h>

@@ -1,5 +1,6 @@
 // digest.c - a fingerprint of a capture, from what can be read quickly
 #include "capture/manifest/capture.h"
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"

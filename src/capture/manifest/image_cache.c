@@ -50,7 +50,7 @@ struct kept_image image_cache_find(struct image_cache *cache, int image)
 }
 
 // Bytes of a budget, or bytes given back to it.
-static bool take(struct image_cache *cache, size_t *left, size_t bytes)
+static bool take_memory(struct image_cache *cache, size_t *left, size_t bytes)
 {
     pthread_mutex_lock(&cache->lock);
     const bool fits = bytes <= *left;
@@ -69,11 +69,11 @@ static void give_back(struct image_cache *cache, size_t *left, size_t bytes)
 struct kept_image image_cache_reserve(struct image_cache *cache, size_t bytes)
 {
     struct kept_image kept = {.rows = NULL};
-    if (take(cache, &cache->left, bytes)) {
+    if (take_memory(cache, &cache->left, bytes)) {
         kept.rows = mem_large(bytes);
         if (!kept.rows)
             give_back(cache, &cache->left, bytes);
-    } else if (take(cache, &cache->left_on_disk, bytes)) {
+    } else if (take_memory(cache, &cache->left_on_disk, bytes)) {
         kept.rows = scratch_map(cache->scratch, bytes);
         kept.mapped = kept.rows ? bytes : 0;
         if (!kept.rows)

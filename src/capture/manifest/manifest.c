@@ -5,6 +5,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/math/vec.h"
+#include "image/geometry/geometry.h"
 #include "image/image/picture.h"
 #include "image/image/picture_kind.h"
 

@@ -2,6 +2,7 @@
 #include "capture/manifest/manifest.h"
 #include "core/base/log.h"
 #include "core/math/vec.h"
+#include "image/geometry/geometry.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,7 @@
 // olat.c - one light at a time: captures as light stages leave them, an EXR with a layer for every
 // light, or a folder of pictures beside a list of directions
 #include "capture/manifest/capture.h"
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -1,11 +1,12 @@
 // open.c - a capture is opened: every promise of the manifest checked against the files
-#include "core/base/log.h"
+#include "capture/manifest/near_view.h"
 #include "core/base/context.h"
 #include "core/base/infile.h"
+#include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/tree.h"
-#include "capture/manifest/near_view.h"
+#include "image/geometry/geometry.h"
 #include "image/image/picture_kind.h"
 
 #include <string.h>

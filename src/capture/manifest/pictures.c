@@ -3,6 +3,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "image/geometry/geometry.h"
 
 #include <relume/image/response.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 // table.c - all images of a view read side by side, so that memory does not grow with their height
 #include "capture/manifest/capture.h"
 #include "capture/manifest/distant.h"
+#include "capture/manifest/reflectance_table.h"
 #include "capture/manifest/repair.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"

@@ -145,7 +145,7 @@ static void print_json(const struct mirror_result *mirrors, const struct traced_
 
 // ---------------------------------------------------------------- the command
 
-static relume_status run(const struct args *args)
+static relume_status run_bench_reflections(const struct args *args)
 {
     const struct reflections_options *o = (const void *)args;
     struct mirror_result mirrors[MIRROR_METHODS];
@@ -167,7 +167,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command bench_task_reflections = {
-    COMMAND("bench reflections", "[MESH ...] [--json]",
+    COMMAND(run_bench_reflections, "bench reflections", "[MESH ...] [--json]",
             "measure reflections by Bezier patches, triangles and octrees against exact rays",
             "relume bench reflections bunny.ply --json", 0, MAX_MESHES),
 };

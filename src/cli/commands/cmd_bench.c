@@ -153,7 +153,7 @@ static relume_status measure(struct times *times, int rounds, int threads,
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_bench(const struct args *args)
 {
     const struct bench_options *o = (const void *)args;
     struct times times[MOST_LOOPS] = {0};
@@ -182,7 +182,7 @@ static const struct command *const tasks[] = {&bench_task_reflections, NULL};
 
 const struct command command_bench = {
     COMMAND(
-        "bench", "[--rounds N] [--json]",
+        run_bench, "bench", "[--rounds N] [--json]",
         "measure how fast relume runs on this machine, and what its memory and arithmetic allow",
         "relume bench --json", 0, 0),
     .defaults = &defaults,

@@ -279,7 +279,7 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
              s->lights, directions, positions, next);
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_capture(const struct args *args)
 {
     const struct capture_options *o = (const void *)args;
     const struct relume_acquire_params params = read_options(o);
@@ -300,7 +300,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_capture = {
-    COMMAND("capture", "PHOTO... -o DIR [OPTION ...]",
+    COMMAND(run_capture, "capture", "PHOTO... -o DIR [OPTION ...]",
             "turn photographs under one light each into a capture, and find their lights",
             "relume capture statue/*.jpg --ball-photos ball -o statue_capture", 1, 4096),
     .defaults = &(const OPTIONS){.cpu_mask = ALL_KERNELS},

@@ -147,7 +147,7 @@ static relume_status open_input(struct relume_change_input *in, relume_capture *
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_change(const struct args *args)
 {
     const struct change_options *o = (const void *)args;
     struct relume_change_input in[2];
@@ -184,7 +184,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_change = {
-    COMMAND("change", "BEFORE AFTER -o DIR [OPTION ...]",
+    COMMAND(run_change, "change", "BEFORE AFTER -o DIR [OPTION ...]",
             "what has changed in shape, colour and gloss between two captures of one object",
             "relume change coin-2024 coin-2026 -o coin-change", 2, 2),
 };

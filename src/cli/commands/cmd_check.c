@@ -93,7 +93,7 @@ static relume_status check_file(const struct check_options *o, const char *path,
 }
 
 // All files are looked at; the worst status is the command's.
-static relume_status run(const struct args *args)
+static relume_status run_check(const struct args *args)
 {
     const struct check_options *o = (const void *)args;
     relume_status worst = RELUME_OK;
@@ -112,7 +112,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_check = {
-    COMMAND("check", "FILE... [--json]",
+    COMMAND(run_check, "check", "FILE... [--json]",
             "read a whole relume file and report what is damaged, and where",
             "relume check archive/*.exr", 1, 4096),
 };

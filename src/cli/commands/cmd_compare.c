@@ -98,7 +98,7 @@ static relume_status look_at(const struct relume_image *a, const struct relume_i
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_compare(const struct args *args)
 {
     const struct compare_options *o = (const void *)args;
     const bool seen = o->metric || o->jnd;
@@ -127,7 +127,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_compare = {
-    COMMAND("compare", "A B [-o OUT] [--metric jnd|vdp] [OPTION ...]",
+    COMMAND(run_compare, "compare", "A B [-o OUT] [--metric jnd|vdp] [OPTION ...]",
             "measure how different two pictures are",
             "relume compare relit.exr photograph.jpg --json", 2, 2),
 };

@@ -229,7 +229,7 @@ static relume_status encode_as_asked(const struct encode_options *o)
 }
 
 // Notes in the file that is replaced stay.
-static relume_status run(const struct args *args)
+static relume_status run_encode(const struct args *args)
 {
     const struct encode_options *o = (const void *)args;
     struct kept_notes kept;
@@ -245,7 +245,7 @@ relume_status encode_as_usual(const struct args *args, const char *capture, cons
 }
 
 const struct command command_encode = {
-    COMMAND("encode", "CAPTURE -o FILE.exr [OPTION ...]",
+    COMMAND(run_encode, "encode", "CAPTURE -o FILE.exr [OPTION ...]",
             "compress a capture (capture.json, its folder, or a .lp file) into one relume file",
             "relume encode photos/dirs.lp -o statue.exr --basis sh --coefficients 16", 1, 1),
 };

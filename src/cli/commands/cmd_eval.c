@@ -87,7 +87,7 @@ static void print_text(const struct relume_evaluation *e)
            e->bits_per_pixel);
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_eval(const struct args *args)
 {
     const struct eval_options *o = (const void *)args;
     relume_pack *pack = NULL;
@@ -119,7 +119,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_eval = {
     COMMAND(
-        "eval", "FILE CAPTURE [--json]",
+        run_eval, "eval", "FILE CAPTURE [--json]",
         "relight a file with every light of a capture and compare the results with its photographs",
         "relume eval statue.exr photos/heldout.lp --json", 2, 2),
 };

@@ -160,7 +160,7 @@ static relume_status check(const struct export_options *o, enum relume_exchange 
     return RELUME_OK;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_export(const struct args *args)
 {
     const struct export_options *o = (const void *)args;
     enum relume_exchange to;
@@ -198,7 +198,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_export = {
-    COMMAND("export", "FILE -o OUT [OPTION ...]",
+    COMMAND(run_export, "export", "FILE -o OUT [OPTION ...]",
             "write a relume file as .ptm, .rti or a folder that web viewers show",
             "relume export statue.exr --to relight -o web/statue --bytes-per-pixel 1", 1, 1),
 };

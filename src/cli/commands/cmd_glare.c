@@ -212,7 +212,7 @@ static relume_status check(const struct glare_options *o)
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_glare(const struct args *args)
 {
     const struct glare_options *o = (const void *)args;
     const struct relume_psf_params psf = psf_params(o);
@@ -239,7 +239,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_glare = {
-    COMMAND("glare", "[IN] -o OUT [OPTION ...]",
+    COMMAND(run_glare, "glare", "[IN] -o OUT [OPTION ...]",
             "show a picture as a human eye sees it, with halos around bright lights",
             "relume glare candle.exr -o seen.png --fov 20 --magnify 2", 0, 1),
     .defaults = &(const OPTIONS){.picture = {1280, 720},

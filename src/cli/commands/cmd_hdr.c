@@ -251,7 +251,7 @@ static relume_status run_groups(struct relume_photographs *list, struct relume_e
 }
 
 // The report is printed when all went well.
-static relume_status run(const struct args *args)
+static relume_status run_hdr(const struct args *args)
 {
     const struct hdr_options *o = (const void *)args;
     struct relume_photographs list;
@@ -282,7 +282,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_hdr = {
-    COMMAND("hdr", "PHOTO... -o OUT.exr|DIR [OPTION ...]",
+    COMMAND(run_hdr, "hdr", "PHOTO... -o OUT.exr|DIR [OPTION ...]",
             "merge exposures of one picture into an HDR picture",
             "relume hdr church/*.jpg --align blocks -o church.exr", 1, 4096),
 };

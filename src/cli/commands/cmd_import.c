@@ -17,7 +17,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_import(const struct args *args)
 {
     const struct import_options *o = (const void *)args;
     struct kept_notes kept;
@@ -30,7 +30,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_import = {
-    COMMAND("import", "IN -o FILE.exr [OPTION ...]",
+    COMMAND(run_import, "import", "IN -o FILE.exr [OPTION ...]",
             "turn a .ptm, .rti, .hsh or a relight web folder into a relume file",
             "relume import coin.ptm -o coin.exr", 1, 1),
 };

@@ -294,7 +294,7 @@ static relume_status tell_baked(const struct info_options *o)
 
 // ---------------------------------------------------------------- the command
 
-static relume_status run(const struct args *args)
+static relume_status run_info(const struct args *args)
 {
     const struct info_options *o = (const void *)args;
     const char *path = o->args.input[0];
@@ -326,7 +326,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_info = {
     COMMAND(
-        "info", "FILE [--json]",
+        run_info, "info", "FILE [--json]",
         "show what a file holds: a relume file, scene file, baked object, .ptm, .rti, web folder, "
         "capture, HDR picture",
         "relume info statue.exr --json", 1, 1),

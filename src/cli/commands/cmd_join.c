@@ -14,7 +14,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_join(const struct args *args)
 {
     const struct join_options *o = (const void *)args;
     struct relume_encode_report report;
@@ -33,7 +33,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_join = {
-    COMMAND("join", "PART... -o FILE.exr",
+    COMMAND(run_join, "join", "PART... -o FILE.exr",
             "make one relume file of the parts that 'relume encode --part' has made",
             "relume join statue.*of8.part -o statue.exr", 1, MOST_ARGUMENTS),
 };

@@ -138,7 +138,7 @@ static relume_status depth_of(const struct lightfield_options *o)
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_lightfield(const struct args *args)
 {
     const struct lightfield_options *o = (const void *)args;
     struct relume_vec3 *lights = NULL;
@@ -161,7 +161,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_lightfield = {
-    COMMAND("lightfield", "PHOTO...|FOLDER|CAPTURE -o DIR [OPTION ...]",
+    COMMAND(run_lightfield, "lightfield", "PHOTO...|FOLDER|CAPTURE -o DIR [OPTION ...]",
             "turn photographs of many cameras into a light field, and estimate its depth",
             "relume lightfield chess/view_*.jpg -o chess_slab", 1, 4096),
 };

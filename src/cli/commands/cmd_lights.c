@@ -67,7 +67,7 @@ static relume_status check(const struct lights_options *o)
     return RELUME_OK;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_lights(const struct args *args)
 {
     const struct lights_options *o = (const void *)args;
     const relume_status wrong = check(o);
@@ -102,7 +102,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_lights = {
-    COMMAND("lights", "[--pattern P] [-n N] | FILE --environment MAP",
+    COMMAND(run_lights, "lights", "[--pattern P] [-n N] | FILE --environment MAP",
             "print a pattern of light directions and how evenly it covers the sphere, or what each "
             "light of a file weighs in an environment",
             "relume lights --pattern hammersley -n 100 --hemisphere", 0, 1),

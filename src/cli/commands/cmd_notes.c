@@ -404,8 +404,8 @@ static relume_status keep(const relume_notes *notes, const char *inside,
 }
 
 // On a picture, or on an object, which is no pack.
-static relume_status work(relume_pack *pack, const struct relume_notes_file *file,
-                          const struct notes_options *o)
+static relume_status edit_notes(relume_pack *pack, const struct relume_notes_file *file,
+                                const struct notes_options *o)
 {
     relume_notes *notes = NULL;
     relume_status status = relume_notes_open(&notes, o->args.input[0], file, o->args.log);
@@ -440,7 +440,7 @@ static relume_status on_picture(const struct notes_options *o)
         const struct relume_pack_info *info = relume_pack_info(pack);
         const struct relume_notes_file file = notes_file_of(pack, path_name(path));
         status = o->view < info->views
-                     ? work(pack, &file, o)
+                     ? edit_notes(pack, &file, o)
                      : usage_error("--view %d: %s has %d view%s, counted from 0", o->view, path,
                                    info->views, relume_plural(info->views));
     }
@@ -465,10 +465,10 @@ static relume_status on_object(const struct notes_options *o)
     for (int k = 0; k < 2; k++)
         for (int c = 0; c < 3; c++)
             file.box[k][c] = (double)box[k][c];
-    return work(NULL, &file, o);
+    return edit_notes(NULL, &file, o);
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_notes(const struct args *args)
 {
     const struct notes_options *o = (const void *)args;
     const relume_status status = check(o);
@@ -478,7 +478,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_notes = {
-    COMMAND("notes", "FILE [--add NOTE] [--to FORMAT -o OUT] [OPTION ...]",
+    COMMAND(run_notes, "notes", "FILE [--add NOTE] [--to FORMAT -o OUT] [OPTION ...]",
             "write notes on a picture, measure in it, hand them to other programs",
             "relume notes coin.exr --add 'line 120,80 300,95' --text 'a scratch'", 1, 1),
 };

@@ -35,7 +35,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_panorama(const struct args *args)
 {
     const struct panorama_options *o = (const void *)args;
     const struct relume_panorama_params panorama = {
@@ -60,7 +60,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_panorama = {
-    COMMAND("panorama", "PHOTO... -o DIR [OPTION ...]",
+    COMMAND(run_panorama, "panorama", "PHOTO... -o DIR [OPTION ...]",
             "stitch photographs to a panorama, or turn a finished one into a capture",
             "relume panorama shot*.jpg -o forest", 1, 4096),
 };

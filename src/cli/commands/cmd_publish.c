@@ -116,7 +116,7 @@ static struct relume_publish_params read_options(const struct publish_options *o
     };
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_publish(const struct args *args)
 {
     const struct publish_options *o = (const void *)args;
     const struct relume_publish_params params = read_options(o);
@@ -129,7 +129,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_publish = {
-    COMMAND("publish", "FILE ... -o SITE [OPTION ...]",
+    COMMAND(run_publish, "publish", "FILE ... -o SITE [OPTION ...]",
             "make a web site of relightable files, for any server or a disk",
             "relume publish coin.exr seal.exr -o site --title \"Coins\" --licence \"CC BY 4.0\"", 1,
             MOST_FILES),

@@ -107,7 +107,7 @@ static relume_status query(const struct query_options *o, const struct relume_ra
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_query(const struct args *args)
 {
     const struct query_options *o = (const void *)args;
     const bool eye = given(o, &o->ray.eye), direction = given(o, &o->ray.direction);
@@ -132,7 +132,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_query = {
-    COMMAND("query", "FILE --eye x,y,z --direction x,y,z | --rays FILE [OPTION ...]",
+    COMMAND(run_query, "query", "FILE --eye x,y,z --direction x,y,z | --rays FILE [OPTION ...]",
             "print the linear r g b that a ray sees, or many rays",
             "relume query teapot.exr --eye 0,0,3 --direction 0,0,-1 --light \"dir 1 1 1\"", 1, 1),
     .defaults = &(const OPTIONS){.cpu_mask = ALL_KERNELS},

@@ -581,7 +581,7 @@ static relume_status run_scene(const struct relight_options *o)
 
 // ---------------------------------------------------------------- the command
 
-static relume_status run(const struct args *args)
+static relume_status run_relight(const struct args *args)
 {
     const struct relight_options *o = (const void *)args;
     const struct relume_pass_params strength = {
@@ -623,7 +623,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_relight = {
-    COMMAND("relight", "FILE -o OUT [OPTION ...]",
+    COMMAND(run_relight, "relight", "FILE -o OUT [OPTION ...]",
             "show a relume file under any lights, from any eye, as a picture",
             "relume relight statue.exr -o raking.png --light \"dir 1 0 0.2 rgb 1 .9 .8\"", 1, 1),
     .defaults =

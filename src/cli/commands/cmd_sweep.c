@@ -281,7 +281,7 @@ static struct listener *listen_to(struct listener *l, const struct relume_log *t
     return l;
 }
 
-struct work {
+struct sweep_files {
     struct sweep *sweep;
     relume_capture *capture;
     relume_heldout *heldout;
@@ -301,7 +301,7 @@ static struct relume_coder_params coder_params(const struct sweep_row *row,
 }
 
 // The coder of all lights, which rows of a group share.
-static relume_status learn(relume_coder **out, double *seconds, const struct work *w,
+static relume_status learn(relume_coder **out, double *seconds, const struct sweep_files *w,
                            const struct sweep_row *row, const struct relume_log *log)
 {
     const struct relume_coder_params params = coder_params(row, log);
@@ -315,8 +315,8 @@ static relume_status learn(relume_coder **out, double *seconds, const struct wor
 }
 
 // The real file of all lights, for its size.
-static relume_status encode_row(struct work *w, struct sweep_row *row, const relume_coder *coder,
-                                const struct relume_log *log)
+static relume_status encode_row(struct sweep_files *w, struct sweep_row *row,
+                                const relume_coder *coder, const struct relume_log *log)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/row.exr", relume_making_path(w->folder));
@@ -357,11 +357,11 @@ static void skip_row(struct sweep_row *row, const struct listener *l, relume_sta
              *l->said ? l->said : relume_status_text(status));
 }
 
-static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
+static relume_status measure_rows(struct sweep_files *w, struct sweep_row **rows, int n,
                                   struct listener *l);
 
 // One way of storing may be impossible where the others are not.
-static relume_status measure_apart(struct work *w, struct sweep_row **rows, int n,
+static relume_status measure_apart(struct sweep_files *w, struct sweep_row **rows, int n,
                                    struct listener *l)
 {
     const double first = l->first, extent = l->extent / n;
@@ -374,7 +374,7 @@ static relume_status measure_apart(struct work *w, struct sweep_row **rows, int 
 }
 
 // What rows of one basis have in common is measured once: before and after storing.
-static relume_status measure_heldout(struct work *w, struct sweep_row **rows, int n,
+static relume_status measure_heldout(struct sweep_files *w, struct sweep_row **rows, int n,
                                      struct listener *l)
 {
     struct relume_heldout_store *store = calloc((size_t)n, sizeof *store);
@@ -398,7 +398,7 @@ static relume_status measure_heldout(struct work *w, struct sweep_row **rows, in
     return status;
 }
 
-static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
+static relume_status measure_rows(struct sweep_files *w, struct sweep_row **rows, int n,
                                   struct listener *l)
 {
     l->extent *= 0.9;
@@ -429,7 +429,7 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
     return status;
 }
 
-static relume_status measure_group(struct work *w, int first, int end)
+static relume_status measure_group(struct sweep_files *w, int first, int end)
 {
     struct sweep_row *rows[MOST_ROWS];
     struct listener l;
@@ -448,7 +448,8 @@ static relume_status measure_group(struct work *w, int first, int end)
 // ---------------------------------------------------------------- the whole
 
 // The rows from `first` on that are of one domain; `*end` is the next.
-static relume_status measure_domain(struct work *w, const relume_capture *test, int first, int *end)
+static relume_status measure_domain(struct sweep_files *w, const relume_capture *test, int first,
+                                    int *end)
 {
     struct sweep *s = w->sweep;
     const struct domain_choice domain = s->row[first].domain;
@@ -476,7 +477,7 @@ static relume_status measure_domain(struct work *w, const relume_capture *test, 
     return status;
 }
 
-static relume_status measure_all(struct work *w, const relume_capture *test)
+static relume_status measure_all(struct sweep_files *w, const relume_capture *test)
 {
     const struct sweep *s = w->sweep;
     relume_status status =
@@ -510,7 +511,7 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
                                     const relume_capture *test)
 {
     const relume_capture *both[] = {capture, test, NULL};
-    struct work w = {.sweep = sweep, .capture = capture};
+    struct sweep_files w = {.sweep = sweep, .capture = capture};
     const uint64_t memory = (uint64_t)sweep->options->memory << 20;
     relume_status status = sweep->out ? sweep_check(sweep) : RELUME_OK;
     if (!status)
@@ -540,7 +541,7 @@ static relume_status open_capture(const struct sweep_options *o, const char *pat
                                                      .keep_bytes = keep));
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_sweep(const struct args *args)
 {
     const struct sweep_options *o = (const void *)args;
     relume_capture *capture = NULL, *test = NULL;
@@ -579,7 +580,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_sweep = {
-    COMMAND("sweep",
+    COMMAND(run_sweep, "sweep",
             "CAPTURE [--leave-out K | --test CAPTURE2] [-o OUT] [--json | --csv] [OPTION ...]",
             "compare file size and quality of coders on lights left out",
             "relume sweep photos/dirs.lp --basis pca,hsh,ptm --leave-out 5 -o statue", 1, 1),

@@ -220,7 +220,7 @@ static bool of_goniometer(const struct synth_options *o)
            given(o, &o->noise) || given(o, &o->shift) || given(o, &o->flicker);
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_synth(const struct args *args)
 {
     const struct synth_options *o = (const void *)args;
     const struct relume_scene_kind *kind;
@@ -269,7 +269,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_synth = {
-    COMMAND("synth", "SCENE|--btf MATERIAL -o DIR",
+    COMMAND(run_synth, "synth", "SCENE|--btf MATERIAL -o DIR",
             "render a built-in scene (box, teapot, bust, attic, chessboard, colonnade, cornell) "
             "under many lights",
             "relume synth teapot -o teapot --views 5x5 --lights 100", 0, 1),

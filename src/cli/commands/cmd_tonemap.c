@@ -20,7 +20,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_tonemap(const struct args *args)
 {
     const struct tonemap_options *o = (const void *)args;
     struct relume_image image = {0};
@@ -36,7 +36,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_tonemap = {
-    COMMAND("tonemap", "IN -o OUT [OPTION ...]",
+    COMMAND(run_tonemap, "tonemap", "IN -o OUT [OPTION ...]",
             "turn an HDR picture into one for the screen: exposure and tone curve",
             "relume tonemap church.hdr -o church.png --exposure -1", 1, 1),
     .defaults =

@@ -174,7 +174,7 @@ static relume_status bake(relume_baked **out, const relume_objects *objects,
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_bake(const struct args *args)
 {
     const struct bake_options *o = (const void *)args;
     struct wanted wanted = {.any = false};
@@ -197,7 +197,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_bake = {
-    COMMAND("bake", "OBJECTS.json|MODEL -o OUT.exr [OPTION ...]",
+    COMMAND(run_bake, "bake", "OBJECTS.json|MODEL -o OUT.exr [OPTION ...]",
             "compute the light on objects beforehand: shadows, light from surface to surface",
             "relume bake cow.json -o cow.exr --bounces 3", 1, 1),
 };

@@ -183,7 +183,7 @@ static relume_status fit_file(struct relume_maps *maps, const struct maps_option
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_maps(const struct args *args)
 {
     const struct maps_options *o = (const void *)args;
     struct prefix_log prefix;
@@ -218,7 +218,7 @@ static const struct command *const tasks[] = {&maps_task_edit, NULL};
 
 const struct command command_maps = {
     .tasks = tasks,
-    COMMAND("maps", "FILE|CAPTURE -o DIR [OPTION ...]",
+    COMMAND(run_maps, "maps", "FILE|CAPTURE -o DIR [OPTION ...]",
             "normal, colour, gloss and height maps, glTF and MaterialX, for other programs",
             "relume maps statue -o statue-maps --width 120", 1, 1),
 };

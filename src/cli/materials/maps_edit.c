@@ -25,7 +25,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_maps_edit(const struct args *args)
 {
     struct maps_edit_options o = *(const struct maps_edit_options *)(const void *)args;
     struct relume_maps maps = {0};
@@ -53,7 +53,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command maps_task_edit = {
-    COMMAND("maps edit", "DIR [-o DIR] [OPTION ...]",
+    COMMAND(run_maps_edit, "maps edit", "DIR [-o DIR] [OPTION ...]",
             "change maps by a list of edits that is kept with them",
             "relume maps edit statue-maps --tint 1,0.9,0.7 -o statue-gold", 1, 1),
 };

@@ -73,7 +73,7 @@ static bool seems_volume(const struct mesh_options *o)
            (!stat(o->args.input[0], &s) && S_ISDIR(s.st_mode));
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_mesh(const struct args *args)
 {
     const struct mesh_options *o = (const void *)args;
     const int block = o->blocks.count ? o->blocks.item[0] : 2;
@@ -92,7 +92,7 @@ static const struct command *const tasks[] = {&mesh_task_simplify, &mesh_task_bi
 
 const struct command command_mesh = {
     .tasks = tasks,
-    COMMAND("mesh", "VOLUME|FILE.exr|MODEL -o OUT [OPTION ...]",
+    COMMAND(run_mesh, "mesh", "VOLUME|FILE.exr|MODEL -o OUT [OPTION ...]",
             "the surface in a volume or behind depth as triangles; models in other formats",
             "relume mesh head.nii.gz --threshold 80 -o head.ply", 1, 1),
 };

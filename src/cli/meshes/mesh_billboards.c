@@ -115,7 +115,7 @@ static relume_status make(const struct billboards_options *o, char *png)
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_mesh_billboards(const struct args *args)
 {
     const struct billboards_options *o = (const void *)args;
     if (o->count && o->error > 0.0)
@@ -135,7 +135,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command mesh_task_billboards = {
-    COMMAND("mesh billboards", "MODEL -o OUT [OPTION ...]",
+    COMMAND(run_mesh_billboards, "mesh billboards", "MODEL -o OUT [OPTION ...]",
             "a model from afar: flat pictures with holes in place of its triangles",
             "relume mesh billboards cow.obj --error 0.02 -o far.glb", 1, 1),
 };

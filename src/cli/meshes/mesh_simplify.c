@@ -65,7 +65,7 @@ static void report(const struct simplify_options *o, const struct relume_simplif
     jend(&w);
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_mesh_simplify(const struct args *args)
 {
     const struct simplify_options *o = (const void *)args;
     const struct relume_mesh_params *p = relume_mesh_params(.log = args->log);
@@ -103,7 +103,8 @@ static relume_status run(const struct args *args)
 }
 
 const struct command mesh_task_simplify = {
-    COMMAND("mesh simplify", "MODEL -o OUT [--error E] [--triangles N] [--jnd J] [OPTION ...]",
+    COMMAND(run_mesh_simplify, "mesh simplify",
+            "MODEL -o OUT [--error E] [--triangles N] [--jnd J] [OPTION ...]",
             "fewer triangles that look the same",
             "relume mesh simplify statue.ply -o small.glb --error 0.001", 1, 1),
 };

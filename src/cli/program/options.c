@@ -168,8 +168,8 @@ static relume_status take_entry(const void **out, const struct command_line *l,
 }
 
 // `text` as the value of an option, or a word of its list.
-static relume_status take(void *out, struct command_line *l, const struct option *o,
-                          const char *text)
+static relume_status take_value(void *out, struct command_line *l, const struct option *o,
+                                const char *text)
 {
     double number = 0.0;
     relume_status status = RELUME_OK;
@@ -212,9 +212,9 @@ static relume_status take_list(void *out, struct command_line *l, const struct o
         if (*count == MOST_ITEMS || n == 0 || n >= sizeof word)
             status = expected(l, o, all, "words separated by commas, at most 64");
         else if (o->kind == OPTION_ENTRY)
-            status = take(&((struct entries *)out)->item[(*count)++], l, o, word);
+            status = take_value(&((struct entries *)out)->item[(*count)++], l, o, word);
         else
-            status = take(&((struct ints *)out)->item[(*count)++], l, o, word);
+            status = take_value(&((struct ints *)out)->item[(*count)++], l, o, word);
     }
     return status;
 }
@@ -266,7 +266,7 @@ static relume_status take_given(struct command_line *l, const struct given *g)
                                  : o->kind == OPTION_RELUME ? relume_name(l->log, o->name, g->text)
                                  : o->kind == OPTION_RIG    ? rig_name(l->log, o->name, g->text)
                                                             : RELUME_OK;
-    return status ? status : (o->list ? take_list : take)(member, l, o, g->text);
+    return status ? status : (o->list ? take_list : take_value)(member, l, o, g->text);
 }
 
 // ---------------------------------------------------------------- the line

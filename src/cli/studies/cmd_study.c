@@ -99,7 +99,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_study_analyse(const struct args *args)
 {
     const struct analyse_options *o = (const void *)args;
     struct relume_study_result result;
@@ -118,7 +118,7 @@ static relume_status run(const struct args *args)
 }
 
 static const struct command analyse = {
-    COMMAND("study analyse", "ANSWERS.csv ... [--json]",
+    COMMAND(run_study_analyse, "study analyse", "ANSWERS.csv ... [--json]",
             "say which condition people choose, how much more often, and how sure that is",
             "relume study analyse subject*.csv", 1, 4096),
 };

@@ -27,8 +27,8 @@ static const struct option options[] = {
 };
 
 // NAME=FOLDER
-static relume_status take(struct relume_study_condition *c, char *name, size_t size,
-                          const char *text)
+static relume_status take_condition(struct relume_study_condition *c, char *name, size_t size,
+                                    const char *text)
 {
     const char *equals = strchr(text, '=');
     const size_t length = equals ? (size_t)(equals - text) : 0;
@@ -40,13 +40,14 @@ static relume_status take(struct relume_study_condition *c, char *name, size_t s
     return RELUME_OK;
 }
 
-static relume_status run(const struct args *args)
+static relume_status run_study_make(const struct args *args)
 {
     const struct make_options *o = (const void *)args;
     struct relume_study_condition condition[RELUME_STUDY_CONDITIONS];
     char name[RELUME_STUDY_CONDITIONS][200];
     for (int i = 0; i < args->inputs; i++) {
-        const relume_status status = take(&condition[i], name[i], sizeof name[i], args->input[i]);
+        const relume_status status =
+            take_condition(&condition[i], name[i], sizeof name[i], args->input[i]);
         if (status)
             return status;
     }
@@ -62,7 +63,7 @@ static relume_status run(const struct args *args)
 
 const struct command study_task_make = {
     .names_built_in = true,
-    COMMAND("study make", "NAME=FOLDER NAME=FOLDER ... -o DIR [OPTION ...]",
+    COMMAND(run_study_make, "study make", "NAME=FOLDER NAME=FOLDER ... -o DIR [OPTION ...]",
             "gather pictures, or folders of frames, of the same scenes under several conditions",
             "relume study make none=plain static=glare moving=films -o study", 2,
             RELUME_STUDY_CONDITIONS),

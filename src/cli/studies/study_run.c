@@ -17,7 +17,7 @@ static const struct option options[] = {
     {0},
 };
 
-static relume_status run(const struct args *args)
+static relume_status run_study_run(const struct args *args)
 {
     const struct run_options *o = (const void *)args;
     return relume_study_page(o->output, args->input[0], o->subject,
@@ -25,7 +25,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command study_task_run = {
-    COMMAND("study run", "DIR -o PAGE.html [--subject N]",
+    COMMAND(run_study_run, "study run", "DIR -o PAGE.html [--subject N]",
             "make the page on which a person chooses; it saves the answers as CSV",
             "relume study run study --subject 7 -o subject7.html", 1, 1),
 };

@@ -103,7 +103,7 @@ static bool was_written(int fd, char name[NAME])
 
 // Its lock, taken; -1 when it is not ours or somebody works there. On a file system without
 // locks nobody knows: then nobody's work is touched.
-static int take(const beside *b, char name[NAME])
+static int take_lock(const beside *b, char name[NAME])
 {
     struct stat s;
     const int fd = open(b->lock, O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
@@ -133,7 +133,7 @@ static void sweep_one(const char *dir, const char *entry, const struct relume_lo
     if (!b)
         return;
     if (!lstat(b->path, &s) && S_ISDIR(s.st_mode) && s.st_uid == geteuid() && rmdir(b->path)) {
-        b->fd = take(b, name);
+        b->fd = take_lock(b, name);
         if (b->fd >= 0) {
             // Stopped between giving away the old name and taking it.
             char *target = *name ? mem_format("%s/%s", b->dir, name) : NULL;

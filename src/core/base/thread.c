@@ -61,7 +61,7 @@ static bool tell(const struct thread_told *t, size_t item, size_t items)
     return log_progress(t->log, t->what, t->from + (t->to - t->from) * share);
 }
 
-static void *run(void *argument)
+static void *run_worker(void *argument)
 {
     const struct worker *w = argument;
     struct loop *loop = w->loop;
@@ -88,12 +88,12 @@ bool thread_for_told(int threads, size_t items, void (*body)(void *, size_t, int
     int started = 1;
     while (started < count) {
         workers[started] = (struct worker){&loop, started};
-        if (!start(&ids[started], run, &workers[started]))
+        if (!start(&ids[started], run_worker, &workers[started]))
             break;
         started++;
     }
     workers[0] = (struct worker){&loop, 0};
-    run(&workers[0]);
+    run_worker(&workers[0]);
     for (int i = 1; i < started; i++)
         pthread_join(ids[i], NULL);
     return !atomic_load(&loop.stopped);

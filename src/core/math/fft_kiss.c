@@ -42,7 +42,7 @@ static bool open_line(struct line *l, int n, bool inverse)
 }
 
 // Where sample i goes: evens ascending, then odds descending.
-static int place(int i, int n)
+static int mirror_index(int i, int n)
 {
     return i % 2 ? n - 1 - i / 2 : i / 2;
 }
@@ -50,7 +50,7 @@ static int place(int i, int n)
 static void forward(struct line *l, float *x, size_t stride)
 {
     for (int i = 0; i < l->n; i++)
-        l->in[place(i, l->n)] = (kiss_fft_cpx){x[(size_t)i * stride], 0.0f};
+        l->in[mirror_index(i, l->n)] = (kiss_fft_cpx){x[(size_t)i * stride], 0.0f};
     kiss_fft(l->plan, l->in, l->out);
     for (int k = 0; k < l->n; k++)
         x[(size_t)k * stride] = 2.0f * (l->out[k].r * l->turn[k].r - l->out[k].i * l->turn[k].i);
@@ -68,7 +68,7 @@ static void backward(struct line *l, float *x, size_t stride)
     }
     kiss_fft(l->plan, l->in, l->out);
     for (int i = 0; i < l->n; i++)
-        x[(size_t)i * stride] = l->out[place(i, l->n)].r;
+        x[(size_t)i * stride] = l->out[mirror_index(i, l->n)].r;
 }
 
 relume_status fft_cosine(float *data, int width, int height, bool inverse)

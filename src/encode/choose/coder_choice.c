@@ -10,17 +10,18 @@
 // smoothing goes. Unseen lights are watched by leaving each captured one out (choose.c). So many
 // components may take more bytes than the pictures themselves, which also keep the colours of small
 // things: then it is `table`.
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
+#include "core/math/scalar.h"
+#include "encode/choose/samples.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/coder/interpolant.h"
 #include "image/image/encoder.h"
-#include "core/base/half.h"
-#include "core/math/scalar.h"
-#include "encode/choose/samples.h"
 
 #include <float.h>
 #include <math.h>

@@ -10,6 +10,7 @@
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "image/compare/ssim.h"
 #include "image/image/encoder.h"

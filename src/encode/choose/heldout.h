@@ -2,6 +2,7 @@
 #ifndef SELECTION_HELDOUT_H
 #define SELECTION_HELDOUT_H
 
+#include "format/codebook/books.h"
 #include "format/coder/sums.h"
 #include "image/image/encoder.h"
 

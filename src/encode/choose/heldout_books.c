@@ -2,6 +2,8 @@
 #include "core/base/memory.h"
 #include "core/base/scratch.h"
 #include "encode/choose/heldout.h"
+#include "format/codebook/books.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 // heldout_load.c - the samples of a capture, or of bands of its rows where memory is short
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"

@@ -8,6 +8,7 @@
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
 #include "encode/choose/samples.h"
+#include "format/coder/coding.h"
 #include "format/coder/interpolant.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
 #include "core/base/params.h"
 #include "encode/choose/samples.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 
 relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
                                  const relume_capture *capture,

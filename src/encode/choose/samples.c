@@ -5,7 +5,9 @@
 #include "core/base/thread.h"
 #include "core/math/random.h"
 #include "encode/choose/samples.h"
+#include "capture/manifest/reflectance_table.h"
 #include "encode/choose/sampling.h"
+#include "format/coder/coding.h"
 #include "image/image/image.h"
 
 #include <string.h>

@@ -11,8 +11,9 @@
 
 #include "core/base/memory.h"
 #include "encode/encode/coding.h"
-#include "encode/levels/pyramid.h"
 #include "encode/encode/rate.h"
+#include "encode/levels/pyramid.h"
+#include "format/pack/pack_write.h"
 
 #include <math.h>
 

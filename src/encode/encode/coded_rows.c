@@ -5,6 +5,7 @@
 #include "encode/encode/coded_rows.h"
 
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,9 +2,10 @@
 #ifndef ENCODE_CODED_ROWS_H
 #define ENCODE_CODED_ROWS_H
 
+#include "encode/encode/material.h"
 #include "encode/parts/groups.h"
 #include "encode/parts/row_counts.h"
-#include "encode/encode/material.h"
+#include "format/coder/coding.h"
 
 // What was added up of the rows of a view.
 struct rows_total {

@@ -3,6 +3,7 @@
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "format/pack/pack_write.h"
 
 // The tiles of a part, with all that belongs to the view beside them where the first is among them.
 static relume_status keep_tiles(struct coding *c, int view, struct group_share tiles)

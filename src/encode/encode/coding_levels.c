@@ -2,6 +2,7 @@
 #include "encode/encode/coding.h"
 
 #include "core/base/memory.h"
+#include "format/pack/pack_write.h"
 
 #include <stdio.h>
 

@@ -3,6 +3,7 @@
 
 #include "encode/encode/rate.h"
 #include "encode/encode/windows.h"
+#include "format/coder/coding.h"
 #include "format/team/array.h"
 
 #include <math.h>

@@ -7,7 +7,10 @@
 #include "encode/encode/coded.h"
 #include "encode/encode/material.h"
 #include "encode/levels/pyramid.h"
+#include "format/codebook/books.h"
 #include "format/codebook/drawing.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
 #include "format/team/array.h"
 
 #include <math.h>

@@ -5,6 +5,7 @@
 // A file whose JND is asked for is several of these (jnd_search.c).
 #include <relume/encode.h>
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
 #include "core/base/params.h"
@@ -12,6 +13,8 @@
 #include "encode/encode/moving.h"
 #include "encode/encode/request.h"
 #include "encode/encode/together.h"
+#include "format/coder/coding.h"
+#include "format/team/folder.h"
 
 #include <math.h>
 #include <sys/stat.h>

@@ -4,6 +4,7 @@
 
 #include "core/base/params.h"
 #include "encode/encode/contest.h"
+#include "format/coder/coding.h"
 
 #include <string.h>
 

@@ -1,9 +1,13 @@
 // material.c - what goes into a file while it is made
 #include "encode/encode/material.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
-
-#include <relume/relight/shadow.h>
+#include "encode/levels/pyramid.h"
+#include "format/codebook/books.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
 

@@ -3,8 +3,10 @@
 #define ENCODE_MATERIAL_H
 
 #include "format/codebook/books.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/lossy/lossy.h"
+#include "format/pack/pack_write.h"
 
 #include <relume/encode/pack_encode.h>
 #include <relume/format/team.h>

@@ -4,7 +4,7 @@
 // by enough to be worth its bytes.
 #include "encode/encode/moving.h"
 
-#include <relume/relight/shadow.h>
+#include "relight/shadow/moving.h"
 
 static const double MIN_SHADOWS_DB = 0.5, MIN_HIGHLIGHTS_DB = 0.3;
 enum {

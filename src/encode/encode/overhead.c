@@ -4,6 +4,8 @@
 #include "encode/encode/overhead.h"
 
 #include "core/base/memory.h"
+#include "encode/levels/pyramid.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/size.h"
 
 enum content { HEADS, EXTRAS, PREVIEW, MODELS };

@@ -3,6 +3,7 @@
 
 #include "core/base/log.h"
 #include "core/math/target_search.h"
+#include "format/coder/coding.h"
 
 #include <math.h>
 #include <string.h>

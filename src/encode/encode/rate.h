@@ -3,6 +3,7 @@
 #define ENCODE_RATE_H
 
 #include "encode/encode/trial.h"
+#include "format/coder/coding.h"
 
 #include <relume/capture.h>
 

@@ -1,7 +1,9 @@
 // together.c - one file made by several processes that run at the same time
 #include "encode/encode/together.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 
 #include <stdio.h>
 #include <string.h>

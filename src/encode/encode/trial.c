@@ -10,6 +10,7 @@
 #include "core/math/scalar.h"
 #include "encode/parts/coded_tiles.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
 #define ENCODE_TRIAL_H
 
 #include "encode/parts/groups.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/lossy/lossy.h"
 

@@ -5,6 +5,7 @@
 #include "core/math/scalar.h"
 #include "format/coder/basis.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 
 #include <math.h>

@@ -6,10 +6,14 @@
 // hardly changes anything.
 #include "relight/shadow/gloss.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
+#include "relight/shadow/moving.h"
 
 #include <relume/material/maps.h>
 

@@ -2,11 +2,12 @@
 // left out
 #include "relight/shadow/mosaic.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
-
-#include <relume/relight/shadow.h>
+#include "format/coder/coding.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
 #include <string.h>

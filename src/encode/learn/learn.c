@@ -1,6 +1,7 @@
 // learn.c - how thick things are and what they would show in full light, from the photographs
 #include "relight/shadow/shadows.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -9,8 +10,8 @@
 #include "core/math/bilinear.h"
 #include "core/math/lsq.h"
 #include "core/math/luminance.h"
-
-#include <relume/relight/shadow.h>
+#include "format/pack/views.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
 #include <string.h>

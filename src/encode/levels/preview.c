@@ -2,6 +2,10 @@
 #include <relume/encode/pack_encode.h>
 
 #include "core/base/memory.h"
+#include "encode/levels/pyramid.h"
+#include "format/codebook/books.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
 
 #include <relume/relight/relight.h>
 #include <string.h>

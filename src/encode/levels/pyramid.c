@@ -4,6 +4,9 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "encode/levels/reduction.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
+#include "format/pack/views.h"
 
 #include <string.h>
 

@@ -13,6 +13,7 @@
 #include "core/math/lsq.h"
 #include "core/math/scalar.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "image/image/curve.h"
 #include "image/image/encoder.h"

@@ -2,6 +2,8 @@
 #ifndef ENCODE_REDUCTION_H
 #define ENCODE_REDUCTION_H
 
+#include "format/coder/coding.h"
+
 #include <relume/format/coder.h>
 
 // Half of a side; an odd one keeps its last pixel.

@@ -5,9 +5,12 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/scratch.h"
+#include "encode/levels/pyramid.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/pack/format.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/reader.h"
 
 #include <errno.h>

@@ -6,6 +6,7 @@
 #include "core/base/thread.h"
 #include "core/math/lsq.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
 
 #include <relume/image/directions.h>
 #include <relume/relight/relight.h>

@@ -10,6 +10,8 @@
 
 #include "core/base/names.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
 
 relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
 {
@@ -17,14 +19,6 @@ relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
                                         "bc1",     "bc7", "bc6h", "olat"};
     const int i = name_find(name, names, sizeof names / sizeof *names);
     *out = (enum relume_exchange)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
-
-relume_status relume_web_type_parse(enum relume_web_type *out, const char *name)
-{
-    static const char *const names[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh"};
-    const int i = name_find(name, names, sizeof names / sizeof *names);
-    *out = (enum relume_web_type)(i < 0 ? 0 : i);
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 

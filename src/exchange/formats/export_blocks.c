@@ -15,6 +15,7 @@
 #include "core/base/outfile.h"
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "format/coder/coding.h"
 #include "image/block/dds.h"
 
 #include <math.h>

@@ -9,6 +9,7 @@
 #include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 #include "image/image/exr.h"
 
 #include <math.h>

@@ -12,6 +12,9 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/math/vec.h"
+#include "encode/levels/pyramid.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
 
 #include <relume/encode/pack_encode.h>
 #include <relume/image/directions.h>

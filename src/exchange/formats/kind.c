@@ -2,6 +2,7 @@
 // that tell them apart
 #include "exchange/formats/kind.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/infile.h"
 #include "core/base/json.h"
 #include "core/base/memory.h"

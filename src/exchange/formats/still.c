@@ -1,9 +1,12 @@
 // still.c - a picture of linear light becomes a relume file that shows it under any light
 #include "exchange/formats/still.h"
 
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "core/base/half.h"
+#include "encode/levels/pyramid.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
 
 #include <math.h>
 #include <relume/encode/pack_encode.h>

@@ -201,16 +201,6 @@ static const struct {
     [RELUME_NOTES_IIIF] = {"iiif", print_iiif},
 };
 
-relume_status relume_notes_format_parse(enum relume_notes_format *out, const char *name)
-{
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
-        if (!strcmp(name, formats[i].name)) {
-            *out = (enum relume_notes_format)i;
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
-}
-
 static relume_status save(FILE *f, bool good, char **text, const size_t *size, const char *path,
                           const struct relume_log *log)
 {

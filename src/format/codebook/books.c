@@ -11,6 +11,7 @@
 #include "core/math/random.h"
 #include "format/codebook/drawing.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 
 #include <math.h>

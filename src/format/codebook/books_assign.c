@@ -7,12 +7,13 @@
 #include "core/base/thread.h"
 #include "format/codebook/dither.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 
 #include <math.h>
 #include <string.h>
 
-struct work {
+struct row_scratch {
     void *waiting;
     float *row;       // [planes][x]
     float *residual;  // [x][planes]
@@ -29,13 +30,13 @@ struct assignment {
     const relume_coefficients *view;
     uint16_t *const *index;
     struct captured captured;
-    struct work *work;  // [workers]
-    double *loss;       // [height]: squared error over the captured lights; negative: not measured
+    struct row_scratch *work;  // [workers]
+    double *loss;  // [height]: squared error over the captured lights; negative: not measured
     struct dither dither[RELUME_MOST_BOOKS];  // where a book has one
     relume_status status;
 };
 
-static void free_work(struct work *w)
+static void free_work(struct row_scratch *w)
 {
     mem_free(w->waiting);
     mem_free(w->row);
@@ -49,7 +50,7 @@ static void free_work(struct work *w)
     mem_free(w->kept);
 }
 
-static bool alloc_work(struct work *w, const struct assignment *a)
+static bool alloc_work(struct row_scratch *w, const struct assignment *a)
 {
     const size_t width = (size_t)a->view->info.width, size = width * (size_t)a->books->info.planes;
     const size_t lights = (size_t)relume_coder_info(a->view->info.coder)->lights;
@@ -76,7 +77,7 @@ static bool alloc_work(struct work *w, const struct assignment *a)
     return true;
 }
 
-static relume_status begin_row(const struct assignment *a, struct work *w, int y)
+static relume_status begin_row(const struct assignment *a, struct row_scratch *w, int y)
 {
     const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
     const relume_status status = coefficients_values(a->view, y, w->waiting, w->row);
@@ -87,7 +88,7 @@ static relume_status begin_row(const struct assignment *a, struct work *w, int y
 }
 
 // One book after another.
-static void find_codes(const struct assignment *a, struct work *w, int y)
+static void find_codes(const struct assignment *a, struct row_scratch *w, int y)
 {
     const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
     for (int b = 0; b < a->books->info.books; b++) {
@@ -123,7 +124,7 @@ void books_row(float *out, size_t stride, const relume_books *books, uint16_t *c
 }
 
 // What the row's indices say instead of its coefficients, over the captured lights.
-static double measure_row(const struct assignment *a, struct work *w, int y)
+static double measure_row(const struct assignment *a, struct row_scratch *w, int y)
 {
     const size_t width = (size_t)a->view->info.width;
     const relume_coder *coder = a->view->info.coder;
@@ -145,7 +146,7 @@ static double measure_row(const struct assignment *a, struct work *w, int y)
 static void assign_row(void *context, size_t item, int worker)
 {
     struct assignment *a = context;
-    struct work *w = &a->work[worker];
+    struct row_scratch *w = &a->work[worker];
     const int y = (int)item;
     a->loss[y] = -1.0;
     if (begin_row(a, w, y)) {

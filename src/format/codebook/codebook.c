@@ -10,6 +10,7 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "core/math/random.h"
+#include "format/codebook/books.h"
 #include "format/codebook/code_search.h"
 
 #include <math.h>

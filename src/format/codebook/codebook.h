@@ -2,6 +2,7 @@
 #ifndef CODEBOOK_CODEBOOK_H
 #define CODEBOOK_CODEBOOK_H
 
+#include "format/codebook/books.h"
 #include "format/codebook/nearest.h"
 
 #include <relume/format/codebook.h>

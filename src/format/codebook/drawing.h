@@ -2,6 +2,7 @@
 #ifndef CODEBOOK_DRAWING_H
 #define CODEBOOK_DRAWING_H
 
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/team/share.h"
 

@@ -7,6 +7,7 @@
 #define CODER_BASIS_H
 
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
 
 #include <relume/format/coder.h>
 

@@ -1,6 +1,7 @@
 // basis_dct.c - cosines on the stereographic discs, fitted directly to the captured directions: no
 // resampling, and the corners of the square outside the disc carry no data at all
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 #include "format/coder/disc.h"
 
 // Bending: the square of the Laplacian's eigenvalue on the square.

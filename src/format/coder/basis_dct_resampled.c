@@ -1,6 +1,7 @@
 // basis_dct_resampled.c - the thesis's way (Wong 1998, 9.1.2): resample the captured lights to a
 // grid over the disc, transform by cosines, keep the lowest zones. Kept for comparison with dct.
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 #include "format/coder/disc.h"
 
 enum { GRID = 50 };  // as in Wong 1998, 9.1.3

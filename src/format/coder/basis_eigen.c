@@ -11,10 +11,11 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
-#include "format/coder/sums.h"
-#include "format/coder/basis.h"
 #include "core/math/lanczos.h"
 #include "core/math/lsq.h"
+#include "format/coder/basis.h"
+#include "format/coder/coding.h"
+#include "format/coder/sums.h"
 
 #include <string.h>
 

@@ -1,6 +1,7 @@
 // basis_hsh.c - hemispherical harmonics (core/math/hsh.h), (degree + 1)^2 of them, fitted by least
 // squares
 #include "core/math/hsh.h"
+#include "format/coder/coding.h"
 #include "format/coder/harmonics.h"
 
 static bool has_count(int count)

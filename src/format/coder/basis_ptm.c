@@ -1,6 +1,7 @@
 // basis_ptm.c - polynomial texture maps (Malzbender, Gelb, Wolters 2001): the biquadratic
 // polynomial of the light's projection, x^2, y^2, x y, x, y, 1, or its linear part
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 
 enum { LINEAR = 3, BIQUADRATIC = 6 };
 

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/math/lsq.h"
+#include "format/coder/coding.h"
 #include "format/coder/interpolant.h"
 #include "format/coder/zone.h"
 

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "format/coder/codes.h"
 #include "core/base/half.h"
+#include "format/coder/coding.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #ifndef CODER_CODES_H
 #define CODER_CODES_H
 
+#include "format/coder/coding.h"
 #include "image/image/exr.h"
 
 #include <relume/format/coder.h>

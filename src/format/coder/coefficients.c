@@ -1,13 +1,14 @@
 // coefficients.c - coefficient planes that wait in a scratch file until their ranges are known
 #include "format/coder/coefficients.h"
 
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/scratch.h"
-#include "format/coder/codes.h"
-#include "core/base/half.h"
 #include "core/kernel/kernels.h"
+#include "format/coder/codes.h"
+#include "format/coder/coding.h"
 
 #include <errno.h>
 #include <float.h>

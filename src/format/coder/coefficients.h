@@ -2,6 +2,8 @@
 #ifndef CODER_COEFFICIENTS_H
 #define CODER_COEFFICIENTS_H
 
+#include "format/coder/coding.h"
+
 #include <relume/format/coder.h>
 #include <sys/types.h>
 

@@ -3,6 +3,8 @@
 // The images are read in bands of rows, whose pixels become coefficients chunk by chunk (apply.c).
 // Ranges for quantising are known only after the last band, so coefficients wait in a scratch file
 // (coefficients.h).
+#include "capture/manifest/reflectance_table.h"
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -11,11 +13,11 @@
 #include "format/coder/basis.h"
 #include "format/coder/census.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/coder/near_fit.h"
 #include "image/image/encoder.h"
 #include "image/image/image.h"
-#include "core/base/half.h"
 
 #include <errno.h>
 #include <float.h>

@@ -1,6 +1,7 @@
 // interpolant_delaunay.c - linear over a triangulation of the lights (mesh.c)
 #include "core/base/memory.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 #include "format/coder/interpolant.h"
 
 #include <string.h>

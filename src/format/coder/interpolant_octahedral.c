@@ -14,7 +14,7 @@ struct grid {
 };
 
 // Where a direction lies in the grid, in nodes.
-static void place(const struct grid *g, vec3 d, double *u, double *v)
+static void place_direction(const struct grid *g, vec3 d, double *u, double *v)
 {
     const double sum = fabs(d.x) + fabs(d.y) + fabs(d.z);
     *u = ((d.x + d.y) / sum + 1.0) / 2.0 * (g->side - 1);
@@ -27,7 +27,7 @@ static bool holds(const struct grid *g, const struct relume_vec3 *lights)
     bool all = true;
     for (int i = 0; i < g->lights; i++) {
         double u, v;
-        place(g, lights[i], &u, &v);
+        place_direction(g, lights[i], &u, &v);
         all &= fabs(u - i % g->side) < near && fabs(v - i / g->side) < near;
     }
     return all;
@@ -53,7 +53,7 @@ static void evaluate(const void *data, struct relume_vec3 light, double *weights
 {
     const struct grid *g = data;
     double u, v;
-    place(g, light, &u, &v);
+    place_direction(g, light, &u, &v);
     memset(weights, 0, (size_t)g->lights * sizeof *weights);
     bilinear_spread(weights, g->side, u, v);
 }

@@ -7,6 +7,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/hull.h"
+#include "format/coder/coding.h"
 
 struct mesh {
     int lights, points;  // points beyond `lights` are helpers

@@ -1,10 +1,12 @@
 // near_fit.c - near lights: every pixel is fitted at the directions from which it was lit
 #include "format/coder/near_fit.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/bilinear.h"
 #include "core/math/lsq.h"
+#include "format/coder/coding.h"
 
 #include <string.h>
 

@@ -9,6 +9,7 @@
 #ifndef CODER_NEAR_FIT_H
 #define CODER_NEAR_FIT_H
 
+#include "capture/manifest/reflectance_table.h"
 #include "format/coder/design.h"
 
 // Thread-safety: one thread at a time.

@@ -1,5 +1,6 @@
 // report.c - views as a whole: how well they were encoded, who encodes which
 #include "core/base/log.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 
 #include <math.h>

@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/math/lsq.h"
 #include "core/math/sort.h"
+#include "format/coder/coding.h"
 #include "format/coder/design.h"
 
 #include <string.h>

@@ -16,6 +16,7 @@
 
 #include "core/math/vec.h"
 #include "format/coder/basis.h"
+#include "format/coder/coding.h"
 
 #include <stdlib.h>
 

@@ -2,6 +2,8 @@
 #ifndef CODER_ZONE_H
 #define CODER_ZONE_H
 
+#include "format/coder/coding.h"
+
 #include <relume/format/coder.h>
 
 struct zone_params {

@@ -30,7 +30,8 @@ static void copy(uint16_t *samples, const Dav1dPicture *p, const struct av1_shap
 
 // The pictures that are ready, of which those of another sequence (samples NULL) are left out; 0
 // when more data is wanted, else the library's error.
-static int take(uint16_t *samples, const struct av1_shape *shape, Dav1dContext *context, int *taken)
+static int take_picture(uint16_t *samples, const struct av1_shape *shape, Dav1dContext *context,
+                        int *taken)
 {
     const size_t size = (size_t)shape->components * (size_t)shape->width * (size_t)shape->height;
     int error;
@@ -54,10 +55,11 @@ static int send(uint16_t *samples, const struct av1_shape *shape, Dav1dContext *
     int error = size ? dav1d_data_wrap(&data, byte, size, keep, NULL) : DAV1D_ERR(EINVAL);
     while (!error && data.sz) {
         const int sent = dav1d_send_data(context, &data);
-        error = sent && sent != DAV1D_ERR(EAGAIN) ? sent : take(samples, shape, context, taken);
+        error =
+            sent && sent != DAV1D_ERR(EAGAIN) ? sent : take_picture(samples, shape, context, taken);
     }
     if (!error)
-        error = take(samples, shape, context, taken);
+        error = take_picture(samples, shape, context, taken);
     dav1d_data_unref(&data);
     return error;
 }

@@ -153,7 +153,7 @@ static bool code(struct group *g, const uint16_t *samples, int picture, int memb
     return true;
 }
 
-static bool run(struct group *g, const uint16_t *const *samples)
+static bool encode_group(struct group *g, const uint16_t *const *samples)
 {
     for (int i = 0; i < g->shape->pictures; i++)
         for (int m = 0; m < g->members; m++)
@@ -168,7 +168,7 @@ relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, 
 {
     struct group g = {.out = out, .shape = shape, .effort = effort, .members = members};
     memset(out, 0, (size_t)members * sizeof *out);
-    const bool done = begin(&g, threads) && run(&g, samples);
+    const bool done = begin(&g, threads) && encode_group(&g, samples);
     const bool memory = g.codec.err == AOM_CODEC_OK || g.codec.err == AOM_CODEC_MEM_ERROR;
     relume_status status = done ? RELUME_OK : RELUME_ENOMEM;
     if (!done && !memory)

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "format/coder/coding.h"
 
 #include <string.h>
 #include <zlib.h>

@@ -8,6 +8,7 @@
 #ifndef LOSSY_LOSSY_H
 #define LOSSY_LOSSY_H
 
+#include "format/coder/coding.h"
 #include "format/lossy/av1.h"
 
 #include <relume/format/coder.h>

@@ -2,9 +2,11 @@
 // what the blocks say
 #include "core/base/infile.h"
 #include "core/base/log.h"
+#include "format/coder/coding.h"
 #include "format/pack/format.h"
 #include "format/pack/part.h"
 #include "format/pack/reader.h"
+#include "format/pack/views.h"
 #include "image/image/exr_sums.h"
 
 #include <string.h>

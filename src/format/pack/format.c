@@ -1,6 +1,7 @@
 // format.c - what writer and reader of a relume file agree on beside names
 #include "format/pack/format.h"
 
+#include "format/codebook/books.h"
 #include "image/geometry/camera.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
 #include "format/pack/learnt.h"
 
 #include "core/base/memory.h"
+#include "format/pack/views.h"
 
 #include <float.h>
 #include <math.h>

@@ -9,6 +9,7 @@
 #define PACK_LEARNT_H
 
 #include "format/lossy/lossy.h"
+#include "format/pack/views.h"
 
 #include <relume/pack.h>
 

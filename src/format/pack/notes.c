@@ -3,6 +3,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "format/pack/format.h"
+#include "format/pack/views.h"
 #include "image/image/exr.h"
 
 #include <relume/pack.h>

@@ -5,6 +5,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/pack/format.h"
 

@@ -3,7 +3,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/names.h"
+#include "format/codebook/books.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/pack/format.h"
 
 #include <stdatomic.h>

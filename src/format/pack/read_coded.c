@@ -5,6 +5,7 @@
 #include "format/lossy/disparity.h"
 #include "format/pack/format.h"
 #include "format/pack/reader.h"
+#include "format/pack/views.h"
 #include "format/pack/words.h"
 
 #include <math.h>

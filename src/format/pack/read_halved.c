@@ -1,6 +1,7 @@
 // read_halved.c - the first reduced level of planes that are coded with loss, which their file
 // leaves out: it would be most of what levels take, and any of it is soon made of the view
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/pack/reader.h"
 
 // Where 2 x 2 pixels lie, those of them that there are, and which count.

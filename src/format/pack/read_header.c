@@ -4,6 +4,7 @@
 #include "format/pack/format.h"
 #include "format/pack/functions.h"
 #include "format/pack/reader.h"
+#include "image/geometry/geometry.h"
 
 #include <math.h>
 #include <string.h>

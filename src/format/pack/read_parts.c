@@ -3,6 +3,7 @@
 #include "format/pack/format.h"
 #include "format/pack/learnt.h"
 #include "format/pack/reader.h"
+#include "format/pack/views.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 // read_slabs.c - where a slab's cameras and window lie, or those of several slabs around an object
 #include "format/pack/format.h"
 #include "format/pack/reader.h"
+#include "image/geometry/geometry.h"
 
 #include <stdio.h>
 

@@ -3,8 +3,10 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/pack/format.h"
 #include "format/pack/reader.h"
+#include "format/pack/views.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -5,6 +5,8 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
 #include "format/pack/reader.h"
 
 #include <math.h>

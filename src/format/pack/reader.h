@@ -3,7 +3,10 @@
 #define PACK_READER_H
 
 #include "core/base/arena.h"
+#include "format/codebook/books.h"
+#include "format/coder/coding.h"
 #include "format/pack/learnt.h"
+#include "format/pack/views.h"
 #include "image/image/exr.h"
 
 #include <relume/format/codebook.h>

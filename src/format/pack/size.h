@@ -2,6 +2,8 @@
 #ifndef PACK_SIZE_H
 #define PACK_SIZE_H
 
+#include "format/pack/pack_write.h"
+
 #include <relume/format/pack_write.h>
 
 // Bytes of the file that relume_pack_write would write of the same. Words and depth are measured

@@ -1,6 +1,9 @@
 // write_books.c - codebooks, and the indices into them
+#include "format/codebook/books.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/pack/format.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/writer.h"
 
 static relume_status index_rows(void *context, int row, int rows, void *samples)

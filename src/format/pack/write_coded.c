@@ -4,6 +4,7 @@
 #include "format/lossy/disparity.h"
 #include "format/pack/format.h"
 #include "format/pack/learnt.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/words.h"
 #include "format/pack/writer.h"
 

@@ -1,11 +1,14 @@
 // write_header.c - the first part of a relume file: the preview, and what all of the file is
-#include "core/base/memory.h"
 #include "core/base/half.h"
-#include "image/image/exr_sums.h"
+#include "core/base/memory.h"
+#include "format/codebook/books.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
 #include "format/pack/format.h"
 #include "format/pack/functions.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/writer.h"
+#include "image/image/exr_sums.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,12 +1,14 @@
 // write_view.c - the parts of one view: its coefficients, depth and mask
+#include "core/base/half.h"
 #include "core/base/memory.h"
 #include "core/base/scratch.h"
 #include "format/coder/codes.h"
+#include "format/coder/coding.h"
 #include "format/coder/coefficients.h"
-#include "core/base/half.h"
-#include "image/image/image.h"
 #include "format/pack/format.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/writer.h"
+#include "image/image/image.h"
 
 #include <stdio.h>
 #include <string.h>

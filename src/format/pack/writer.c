@@ -4,7 +4,9 @@
 #include "core/base/names.h"
 #include "core/base/params.h"
 #include "format/pack/format.h"
+#include "format/pack/pack_write.h"
 #include "format/pack/size.h"
+#include "format/pack/views.h"
 
 enum { MOST_ATTRIBUTES = 48 };
 

@@ -3,6 +3,9 @@
 #define PACK_WRITER_H
 
 #include "core/base/arena.h"
+#include "format/codebook/books.h"
+#include "format/coder/coding.h"
+#include "format/pack/pack_write.h"
 #include "image/image/exr.h"
 
 #include <relume/format/pack_write.h>

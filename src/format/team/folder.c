@@ -13,6 +13,7 @@
 #include "core/base/outfile.h"
 #include "core/base/thread.h"
 #include "core/math/fnv.h"
+#include "format/team/folder.h"
 
 #include <errno.h>
 #include <fcntl.h>

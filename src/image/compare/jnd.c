@@ -1,5 +1,7 @@
 // jnd.c - the scale of just noticeable differences: opponent colours, contrast sensitivity, masking
 // (Guthe 2008, section 10.2: Tab. 10.1; Daly 1993)
+#include "image/compare/jnd.h"
+
 #include <relume/image/jnd.h>
 
 #include <math.h>

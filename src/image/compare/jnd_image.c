@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/math/sort.h"
+#include "image/compare/jnd.h"
 #include "image/compare/sight.h"
 
 #include <math.h>

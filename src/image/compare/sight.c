@@ -5,6 +5,7 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "image/compare/jnd.h"
 
 #include <math.h>
 #include <string.h>

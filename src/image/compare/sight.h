@@ -5,6 +5,7 @@
 #define COMPARE_SIGHT_H
 
 #include "core/math/fft2d.h"
+#include "image/compare/jnd.h"
 
 #include <relume/image/jnd.h>
 

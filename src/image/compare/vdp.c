@@ -5,6 +5,7 @@
 // Detections in different bands are independent: what all of them miss is the product of what each
 // misses, so that exponents add up.
 #include "core/base/params.h"
+#include "image/compare/jnd.h"
 #include "image/compare/sight.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // geometry.c - projections and poses: names, defaults, what fits, from the world and back
 #include "core/base/names.h"
 #include "core/math/vec.h"
+#include "image/geometry/geometry.h"
 
 #include <relume/camera.h>
 #include <string.h>

@@ -5,6 +5,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
+#include "image/image/merge_weight.h"
 
 #include <errno.h>
 #include <math.h>

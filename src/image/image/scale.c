@@ -12,17 +12,6 @@
 
 #include <string.h>
 
-relume_status relume_filter_parse(enum relume_filter *out, const char *name)
-{
-    static const char *const names[] = {[RELUME_FILTER_DEFAULT] = "auto",
-                                        [RELUME_FILTER_NEAREST] = "nearest",
-                                        [RELUME_FILTER_LINEAR] = "linear",
-                                        [RELUME_FILTER_CUBIC] = "cubic"};
-    const int i = name_find(name, names, sizeof names / sizeof *names);
-    *out = (enum relume_filter)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
-
 // Pixels of one axis as sums of texels.
 struct axis {
     int taps;   // a pixel
@@ -195,8 +184,8 @@ static void scale_row(void *context, size_t row, int worker)
         scale_across(&p->axis, from, p->to->width, to, channels);
 }
 
-static relume_status run(struct pass *p, const struct side *side, int threads,
-                         enum relume_filter filter)
+static relume_status scale_axis(struct pass *p, const struct side *side, int threads,
+                                enum relume_filter filter)
 {
     const relume_status status = create_axis(&p->axis, side, filter) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
@@ -228,10 +217,10 @@ relume_status relume_image_scale(struct relume_image *out, const struct relume_i
         status = relume_image_create(out, width, height, image->channels);
     struct pass pass = {.from = image, .to = &wide};
     if (!status)
-        status = run(&pass, &across, p.threads, p.filter);
+        status = scale_axis(&pass, &across, p.threads, p.filter);
     pass = (struct pass){.from = &wide, .to = out, .down = true};
     if (!status)
-        status = run(&pass, &down, p.threads, p.filter);
+        status = scale_axis(&pass, &down, p.threads, p.filter);
     relume_image_destroy(&wide);
     if (status)
         relume_image_destroy(out);

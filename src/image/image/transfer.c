@@ -1,4 +1,6 @@
 // transfer.c - code values and linear light (IEC 61966-2-1 for sRGB)
+#include "image/image/merge_weight.h"
+
 #include <relume/image.h>
 #include <relume/image/response.h>
 

@@ -1,10 +1,11 @@
 // btf.c - the inside of a relume_btf, and what its readers and its models share
 #include "material/btf/btf.h"
 
-#include "core/base/scratch.h"
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "core/base/half.h"
+#include "core/base/scratch.h"
+#include "material/btf/values.h"
 
 #include <errno.h>
 #include <string.h>

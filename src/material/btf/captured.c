@@ -3,10 +3,11 @@
 //
 // A camera is as near as it stands: the direction to it, which differs over the window, is that
 // from the window's middle.
-#include "core/base/tree.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "core/base/tree.h"
 #include "material/btf/btf.h"
+#include "material/btf/values.h"
 
 #include <relume/capture.h>
 #include <string.h>

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/math/hull.h"
 #include "core/math/vec.h"
+#include "material/btf/values.h"
 
 #include <relume/material/btf.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 // directions.c - the direction sets of the Bonn laboratory and dome, and a coarse one for trials
 #include "core/math/vec.h"
+#include "material/btf/values.h"
 
 #include <relume/material/btf.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "material/btf/btf.h"
+#include "material/btf/values.h"
 
 #include <stdatomic.h>
 

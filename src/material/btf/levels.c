@@ -1,11 +1,12 @@
 // levels.c - levels of detail of a BTF: values are averaged, never the parameters of a model, which
 // do not enter them linearly
+#include "core/base/half.h"
 #include "core/base/log.h"
-#include "core/base/params.h"
 #include "core/base/memory.h"
+#include "core/base/params.h"
 #include "core/base/thread.h"
 #include "material/btf/btf.h"
-#include "core/base/half.h"
+#include "material/btf/values.h"
 
 int btf_half_side(int side)
 {

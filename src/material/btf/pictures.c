@@ -1,11 +1,12 @@
 // pictures.c - a BTF as the Bonn laboratory hands it out: a folder of pictures named by the angles
 // of light and view, tl (light from the pole), pl (light azimuth), tv, pv, in whole degrees or not
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/base/tree.h"
 #include "material/btf/btf.h"
-#include "core/base/half.h"
+#include "material/btf/values.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -238,7 +239,7 @@ static relume_status find_strays(const struct pictures *p)
     return status ? status : find_strays_of(p, true);
 }
 
-static relume_status place(struct pictures *p)
+static relume_status place_pictures(struct pictures *p)
 {
     for (size_t i = 0; i < p->count; i++) {
         struct picture *one = &p->all[i];
@@ -275,7 +276,7 @@ static relume_status make_grid(struct pictures *p)
     p->view_count = distinct(p->views, p->count);
     p->light_count = distinct(p->lights, p->count);
     p->grid = mem_zeroed((size_t)p->view_count * (size_t)p->light_count, sizeof(void *));
-    return p->grid ? place(p) : RELUME_ENOMEM;
+    return p->grid ? place_pictures(p) : RELUME_ENOMEM;
 }
 
 static vec3 *directions(const struct angles *a, int n)

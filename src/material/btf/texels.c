@@ -25,8 +25,8 @@ static void run_chunk(void *context, size_t item, int worker)
         p->body(p->context, first + i, p->scratch[worker] + i * p->each);
 }
 
-static relume_status run(struct loop *p, int threads, const struct relume_log *log,
-                         const char *what)
+static relume_status loop_texels(struct loop *p, int threads, const struct relume_log *log,
+                                 const char *what)
 {
     const size_t chunks = (btf_texels(p->btf) + CHUNK - 1) / CHUNK;
     for (; p->first_chunk < chunks; p->first_chunk += CHUNKS_AT_ONCE) {
@@ -56,7 +56,7 @@ relume_status btf_for_texels(const relume_btf *btf, int threads, const struct re
         if (!(p.scratch[i] = mem_array(CHUNK * p.each, sizeof(float))))
             status = RELUME_ENOMEM;
     if (!status)
-        status = run(&p, workers, log, what);
+        status = loop_texels(&p, workers, log, what);
     for (int i = 0; p.scratch && i < workers; i++)
         mem_free(p.scratch[i]);
     mem_free(p.scratch);

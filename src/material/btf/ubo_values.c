@@ -142,13 +142,13 @@ static void read_row(float *to, size_t step, const uint8_t *row, int rank, int s
 }
 
 // What a worker needs.
-struct work {
+struct ubo_buffers {
     float *pair[UBO_COLOURS];     // [PAIRS][rank]
     float *texel;                 // [rank][TEXELS]
     float *product[UBO_COLOURS];  // [PAIRS][TEXELS]
 };
 
-static bool work_start(struct work *b, const struct ubo *u)
+static bool work_start(struct ubo_buffers *b, const struct ubo *u)
 {
     int most = 0;
     bool good = true;
@@ -163,7 +163,7 @@ static bool work_start(struct work *b, const struct ubo *u)
     return good && b->texel;
 }
 
-static void work_end(struct work *b)
+static void work_end(struct ubo_buffers *b)
 {
     for (int c = 0; c < UBO_COLOURS; c++) {
         mem_free(b->pair[c]);
@@ -172,7 +172,7 @@ static void work_end(struct work *b)
     mem_free(b->texel);
 }
 
-static void read_pairs(const struct work *b, const struct ubo *u, size_t first, size_t n)
+static void read_pairs(const struct ubo_buffers *b, const struct ubo *u, size_t first, size_t n)
 {
     for (int c = 0; c < UBO_COLOURS; c++) {
         const struct ubo_plane *p = &u->plane[c];
@@ -183,7 +183,7 @@ static void read_pairs(const struct work *b, const struct ubo *u, size_t first, 
 }
 
 // Texels are those of the crop.
-static void read_texels(const struct work *b, const struct ubo *u, const struct ubo_plane *p,
+static void read_texels(const struct ubo_buffers *b, const struct ubo *u, const struct ubo_plane *p,
                         size_t first, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -194,7 +194,7 @@ static void read_texels(const struct work *b, const struct ubo *u, const struct 
     }
 }
 
-static void multiply(const struct work *b, const struct ubo *u, size_t pairs, size_t first,
+static void multiply(const struct ubo_buffers *b, const struct ubo *u, size_t pairs, size_t first,
                      size_t n)
 {
     for (int c = 0; c < UBO_COLOURS; c++) {
@@ -224,16 +224,16 @@ static bool store_row(uint16_t *to, float *const v[UBO_COLOURS], size_t n)
 struct storing {
     const struct ubo *ubo;
     relume_btf *btf;
-    struct work *work;  // one a worker
-    size_t first;       // item of the batch
-    size_t bad[BATCH];  // the first pair of an item that is not finite, or SIZE_MAX
+    struct ubo_buffers *work;  // one a worker
+    size_t first;              // item of the batch
+    size_t bad[BATCH];         // the first pair of an item that is not finite, or SIZE_MAX
 };
 
 static void store_item(void *context, size_t item, int worker)
 {
     struct storing *s = context;
     const struct ubo *u = s->ubo;
-    const struct work *b = &s->work[worker];
+    const struct ubo_buffers *b = &s->work[worker];
     const size_t texels = btf_texels(s->btf), first = (s->first + item) * PAIRS;
     const size_t all = (size_t)u->views * (size_t)u->lights;
     const size_t pairs = all - first < PAIRS ? all - first : PAIRS;

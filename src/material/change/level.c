@@ -76,7 +76,7 @@ static void find_worth(double *worth, const struct draw *d, const struct relume_
         worth[i] = 1.0 / (quiet * quiet + worth[i] / median);
 }
 
-static relume_status take(struct draw *d, const struct surface *a, const struct surface *b)
+static relume_status draw_sample(struct draw *d, const struct surface *a, const struct surface *b)
 {
     const size_t n = (size_t)a->width * (size_t)a->height;
     size_t known = 0;
@@ -288,7 +288,7 @@ relume_status level_find(struct level *out, const struct surface *a, const struc
     struct draw d;
     (void)threads;
     *out = (struct level){0};
-    const relume_status status = take(&d, a, b);
+    const relume_status status = draw_sample(&d, a, b);
     if (!status && d.count) {
         set_roll(out->turn, place, a);
         level_normals(out, &d, keep_bend);

@@ -10,6 +10,7 @@
 #include "material/change/surface.h"
 
 #include "capture/manifest/near_view.h"
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"

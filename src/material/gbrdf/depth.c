@@ -12,6 +12,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/luminance.h"
+#include "material/btf/values.h"
 #include "material/gbrdf/cut.h"
 
 #include <stdatomic.h>

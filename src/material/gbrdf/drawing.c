@@ -6,6 +6,7 @@
 #include "core/math/base64.h"
 #include "core/math/bilinear.h"
 #include "core/math/scalar.h"
+#include "material/gbrdf/edit_table.h"
 
 #include <string.h>
 

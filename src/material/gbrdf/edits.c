@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "material/gbrdf/drawing.h"
+#include "material/gbrdf/edit_table.h"
 #include "material/gbrdf/operations.h"
 
 #include <string.h>

@@ -10,6 +10,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "material/gbrdf/drawing.h"
+#include "material/gbrdf/edit_table.h"
 #include "material/gbrdf/operations.h"
 
 #include <stdio.h>

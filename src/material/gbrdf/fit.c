@@ -7,6 +7,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "material/btf/values.h"
 #include "material/gbrdf/als.h"
 #include "material/gbrdf/cluster.h"
 #include "material/gbrdf/depth.h"
@@ -58,7 +59,7 @@ void gbrdf_maps_free(struct gbrdf_maps *maps)
 
 static const double BRIGHTEST = 0.6;
 
-struct work {
+struct gbrdf_fitting {
     struct flat flat;
     const struct gbrdf_fit_params *p;
     size_t texels, pairs;
@@ -105,7 +106,7 @@ static double light_of(const relume_btf *btf)
 
 static void fit_alone(void *context, size_t texel, const float *values)
 {
-    struct work *w = context;
+    struct gbrdf_fitting *w = context;
     struct als_samples samples = {mem_array(als_blocks(w->pairs), sizeof *samples.block), 0, 0.0f};
     struct als_sums *sums = mem_array(1, sizeof *sums);
     float q[COARSE_SIDE * COARSE_SIDE];
@@ -131,13 +132,13 @@ struct learner {
     struct als_sums *sums;
 };
 
-static struct als_form fine_form(const struct work *w)
+static struct als_form fine_form(const struct gbrdf_fitting *w)
 {
     return (struct als_form){NDF_SIDE, 3, 1, w->light};
 }
 
 // Texels of a label, evenly over the sample.
-static int choose_texels(size_t *out, const struct work *w, int label)
+static int choose_texels(size_t *out, const struct gbrdf_fitting *w, int label)
 {
     size_t all = 0, seen = 0;
     int count = 0;
@@ -153,7 +154,7 @@ static int choose_texels(size_t *out, const struct work *w, int label)
     return count;
 }
 
-static bool gather_texels(struct learner *l, const struct work *w)
+static bool gather_texels(struct learner *l, const struct gbrdf_fitting *w)
 {
     float *values = mem_array(3 * w->pairs, sizeof *values);
     const struct als_form form = fine_form(w);
@@ -170,7 +171,7 @@ static bool gather_texels(struct learner *l, const struct work *w)
 
 // Texels beside q, q beside texels. The scale that a texel would like is a way for q to move that
 // single cells take long to go.
-static void learn_round(struct learner *l, const struct work *w, float *q)
+static void learn_round(struct learner *l, const struct gbrdf_fitting *w, float *q)
 {
     const struct als_form form = fine_form(w);
     double scale = 0.0, diffuse[3] = {0.0, 0.0, 0.0};
@@ -193,7 +194,7 @@ static void learn_round(struct learner *l, const struct work *w, float *q)
 static void learn_material(void *context, size_t label, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct gbrdf_fitting *w = context;
     struct learner l = {
         .texel = mem_array(MATERIAL_TEXELS + 1, sizeof *l.texel),
         .samples = mem_array(MATERIAL_TEXELS, sizeof *l.samples),
@@ -225,7 +226,7 @@ static void learn_material(void *context, size_t label, int worker)
 
 static void fit_beside(void *context, size_t texel, const float *values)
 {
-    struct work *w = context;
+    struct gbrdf_fitting *w = context;
     struct als_samples samples = {mem_array(als_blocks(w->pairs), sizeof *samples.block), 0, 0.0f};
     const struct als_form form = fine_form(w);
     if (samples.block) {
@@ -237,7 +238,7 @@ static void fit_beside(void *context, size_t texel, const float *values)
     mem_free(samples.block);
 }
 
-static relume_status for_texels(struct work *w, const char *what,
+static relume_status for_texels(struct gbrdf_fitting *w, const char *what,
                                 void (*body)(void *context, size_t texel, const float *values))
 {
     const relume_status status =
@@ -245,7 +246,7 @@ static relume_status for_texels(struct work *w, const char *what,
     return status ? status : w->failed ? RELUME_ENOMEM : RELUME_OK;
 }
 
-static void store(struct gbrdf_maps *out, const struct work *w)
+static void store(struct gbrdf_maps *out, const struct gbrdf_fitting *w)
 {
     *out->light = (float)w->light;
     memcpy(out->label, w->clusters.label, w->texels);
@@ -261,7 +262,7 @@ static void store(struct gbrdf_maps *out, const struct work *w)
     gbrdf_limit_energy(out);
 }
 
-static relume_status find_materials(struct work *w, const struct gbrdf_maps *out)
+static relume_status find_materials(struct gbrdf_fitting *w, const struct gbrdf_maps *out)
 {
     relume_status status = for_texels(w, "fitting texels", fit_alone);
     if (!status)
@@ -350,7 +351,7 @@ relume_status gbrdf_fit(struct gbrdf_maps *out, const relume_btf *btf,
                         const struct gbrdf_fit_params *p)
 {
     const struct relume_btf_info *info = relume_btf_info(btf);
-    struct work w = {
+    struct gbrdf_fitting w = {
         .p = p, .texels = btf_texels(btf), .pairs = (size_t)info->views * (size_t)info->lights};
     float *z = mem_zeroed(w.texels, sizeof *z);
     w.light = light_of(btf);

@@ -4,10 +4,11 @@
 #include "core/base/half.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "material/btf/values.h"
 
 #include <stdatomic.h>
 
-struct work {
+struct flattening {
     struct flat *flat;
     const relume_btf *btf;
     const struct meso *relief;
@@ -35,7 +36,7 @@ static void move_picture(float *to, const uint16_t *from, const struct bilinear 
 static void move_view(void *context, size_t view, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct flattening *w = context;
     const struct relume_btf_info *info = relume_btf_info(w->btf);
     const size_t texels = btf_texels(w->btf);
     struct bilinear *at = mem_array(texels, sizeof *at);
@@ -55,7 +56,7 @@ static void move_view(void *context, size_t view, int worker)
 static void look_around(void *context, size_t row, int worker)
 {
     (void)worker;
-    const struct work *w = context;
+    const struct flattening *w = context;
     const struct relume_btf_info *info = relume_btf_info(w->btf);
     const struct meso *m = w->relief;
     for (int x = 0; x < m->width; x++) {
@@ -74,7 +75,7 @@ relume_status flat_make(struct flat *out, const relume_btf *btf, const struct me
 {
     struct relume_btf_info info = *relume_btf_info(btf);
     const size_t texels = btf_texels(btf);
-    struct work w = {out, btf, relief, false};
+    struct flattening w = {out, btf, relief, false};
     *out = (struct flat){
         .btf = btf,
         .views = info.views,

@@ -21,7 +21,7 @@ static const double DARK = 0.1;  // of the mean: darker values are of shadows
 // 64 x 64 texels normals are off by 3.6 degrees with it, and by 1.8 with this.
 static const double DEPTH_WEIGHT = 0.01;
 
-struct work {
+struct normal_search {
     vec3 *out;
     const struct flat *flat;
     const struct picture_pair *pairs;
@@ -33,7 +33,7 @@ struct equation {
     double ratio;  // log L12 - log L21
 };
 
-static double value_of(const struct work *w, const float *values, int view, int light)
+static double value_of(const struct normal_search *w, const float *values, int view, int light)
 {
     const struct relume_btf_info *info = relume_btf_info(w->flat->btf);
     const double scale = info->without_cosine ? info->light[light].z : 1.0;
@@ -42,8 +42,8 @@ static double value_of(const struct work *w, const float *values, int view, int 
 }
 
 // Pairs that are seen from both sides and light enough; *start is the linear solution.
-static int collect(struct equation *out, const struct work *w, size_t texel, const float *values,
-                   vec3 *start)
+static int collect(struct equation *out, const struct normal_search *w, size_t texel,
+                   const float *values, vec3 *start)
 {
     const struct relume_btf_info *info = relume_btf_info(w->flat->btf);
     const uint8_t *seen = w->flat->seen + texel * (size_t)w->flat->views;
@@ -134,7 +134,7 @@ static void improve(const struct equation *e, int n, double x[2])
 
 static void find_normal(void *context, size_t texel, const float *values)
 {
-    const struct work *w = context;
+    const struct normal_search *w = context;
     struct equation *e = mem_array((size_t)w->count, sizeof *e);
     vec3 start = w->flat->normal[texel];
     w->out[texel] = start;
@@ -150,7 +150,7 @@ static void find_normal(void *context, size_t texel, const float *values)
 relume_status depth_normals(vec3 *out, const struct flat *flat, const struct picture_pair *pairs,
                             int count, int threads, const struct relume_log *log)
 {
-    struct work w = {out, flat, pairs, count, 1 + count / MOST_PAIRS};
+    struct normal_search w = {out, flat, pairs, count, 1 + count / MOST_PAIRS};
     return btf_for_texels(flat->btf, threads, log, "normals", &w, find_normal);
 }
 

@@ -5,6 +5,7 @@
 #include "core/math/bilinear.h"
 #include "core/math/vec.h"
 #include "material/gbrdf/drawing.h"
+#include "material/maps/maps.h"
 
 #include <string.h>
 

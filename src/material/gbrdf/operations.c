@@ -2,6 +2,7 @@
 #include "material/gbrdf/operations.h"
 
 #include "core/base/log.h"
+#include "material/gbrdf/edit_table.h"
 #include "material/gbrdf/on_maps.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
 // maps.c - from photographs to maps: the shape, the codebook, each pixel's place in it, its colour
 #include "material/maps/maps.h"
 
+#include "capture/acquire/photometric.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -20,7 +21,7 @@ static const double BLEND = 0.1;   // of the least loss: so much more counts a t
 // are too bright for matte surfaces: they are no evidence unless they are most of the picture.
 static const double BRIGHTEST = 0.8, TOO_BRIGHT = 1.0, TOO_DARK = 0.03;
 
-struct work {
+struct maps_fitting {
     struct relume_maps_params params;
     struct relume_maps *out;
     const relume_capture *capture;
@@ -38,12 +39,12 @@ struct work {
     struct relume_image f0;
 };
 
-static size_t pixels_of(const struct work *w)
+static size_t pixels_of(const struct maps_fitting *w)
 {
     return (size_t)w->photos.width * (size_t)w->photos.height;
 }
 
-static bool is_known(const struct work *w, size_t at)
+static bool is_known(const struct maps_fitting *w, size_t at)
 {
     return w->photos.known.data[at] > 0.5f;
 }
@@ -52,7 +53,7 @@ static bool is_known(const struct work *w, size_t at)
 
 // Most is held when heights are integrated: measured (a million pixels: 204 MB, of which 36 are the
 // program and photographs in work). Losses of 16 materials take less.
-static relume_status check_memory(const struct work *w)
+static relume_status check_memory(const struct maps_fitting *w)
 {
     enum { BYTES = 170 };  // a pixel
     const uint64_t pixels = (uint64_t)w->out->width * (uint64_t)w->out->height;
@@ -60,7 +61,7 @@ static relume_status check_memory(const struct work *w)
                          w->params.log);
 }
 
-static relume_status check(const struct work *w)
+static relume_status check(const struct maps_fitting *w)
 {
     const struct relume_manifest *m = relume_capture_manifest(w->capture);
     const struct relume_maps_params *p = &w->params;
@@ -99,7 +100,7 @@ static relume_status check(const struct work *w)
 }
 
 // Those held out lie evenly in the order of the capture, which mostly follows the dome.
-static relume_status divide_lights(struct work *w)
+static relume_status divide_lights(struct maps_fitting *w)
 {
     const int all = relume_capture_manifest(w->capture)->lights;
     const int asked = w->params.held_out;
@@ -124,7 +125,7 @@ static relume_status divide_lights(struct work *w)
 
 // ---------------------------------------------------------------- shape and brightness
 
-static relume_status find_shape(struct work *w)
+static relume_status find_shape(struct maps_fitting *w)
 {
     relume_capture *some;
     relume_status status = relume_capture_select(&some, w->capture, w->light, w->fitted);
@@ -138,7 +139,7 @@ static relume_status find_shape(struct work *w)
 }
 
 // Pixels without a normal are not known from here on.
-static relume_status find_known(struct work *w)
+static relume_status find_known(struct maps_fitting *w)
 {
     size_t known = 0;
     for (size_t i = 0; i < pixels_of(w); i++) {
@@ -156,7 +157,7 @@ static relume_status find_known(struct work *w)
                         : "the photographs are black");
 }
 
-static relume_status find_gain(struct work *w)
+static relume_status find_gain(struct maps_fitting *w)
 {
     size_t n = 0;
     float *most = mem_array(pixels_of(w), sizeof *most);
@@ -182,7 +183,7 @@ static relume_status find_gain(struct work *w)
 
 // ---------------------------------------------------------------- the codebook
 
-static relume_status prepare_learners(struct work *w)
+static relume_status prepare_learners(struct maps_fitting *w)
 {
     size_t known = 0;
     for (size_t i = 0; i < pixels_of(w); i++)
@@ -201,7 +202,7 @@ static relume_status prepare_learners(struct work *w)
 static void gather_row(void *context, size_t y, int worker)
 {
     (void)worker;
-    const struct work *w = context;
+    const struct maps_fitting *w = context;
     const size_t width = (size_t)w->photos.width, step = (size_t)w->step;
     size_t at = 0;
     if (y % step)
@@ -221,7 +222,7 @@ static void gather_row(void *context, size_t y, int worker)
     }
 }
 
-static relume_status find_materials(struct work *w)
+static relume_status find_materials(struct maps_fitting *w)
 {
     relume_status status = prepare_learners(w);
     if (!status)
@@ -240,8 +241,8 @@ static relume_status find_materials(struct work *w)
 // ---------------------------------------------------------------- each pixel's place in it
 
 // The normal and colour of a pixel of that gloss; returns its loss.
-static float fit_pixel(float normal[3], float colour[3], const struct work *w, const struct look *k,
-                       const struct gloss *g, size_t at)
+static float fit_pixel(float normal[3], float colour[3], const struct maps_fitting *w,
+                       const struct look *k, const struct gloss *g, size_t at)
 {
     float start[3];
     gloss_start(start, k, g, w->shape.normal.data + 3 * at);
@@ -252,14 +253,14 @@ static float fit_pixel(float normal[3], float colour[3], const struct work *w, c
 }
 
 // Losses are found of every such column and row.
-static int every_of(const struct work *w)
+static int every_of(const struct maps_fitting *w)
 {
     return w->params.gloss_alone ? 2 : 1;
 }
 
 static void lose_row(void *context, size_t y, int worker)
 {
-    const struct work *w = context;
+    const struct maps_fitting *w = context;
     const size_t width = (size_t)w->photos.width;
     struct look k;
     const size_t every = (size_t)every_of(w);
@@ -277,7 +278,7 @@ static void lose_row(void *context, size_t y, int worker)
 }
 
 // The loss of every material, meaned over neighbours of like colour.
-static void mean_losses(double loss[], const struct work *w, int x, int y)
+static void mean_losses(double loss[], const struct maps_fitting *w, int x, int y)
 {
     const int width = w->photos.width, height = w->photos.height, every = every_of(w);
     const float *here = w->shape.albedo.data + 3 * ((size_t)y * (size_t)width + (size_t)x);
@@ -304,7 +305,7 @@ static void mean_losses(double loss[], const struct work *w, int x, int y)
         loss[i] /= sum;
 }
 
-static void place_pixel(const struct work *w, int x, int y)
+static void place_pixel(const struct maps_fitting *w, int x, int y)
 {
     const struct materials *m = &w->materials;
     const size_t at = (size_t)y * (size_t)w->photos.width + (size_t)x;
@@ -329,13 +330,13 @@ static void place_pixel(const struct work *w, int x, int y)
 static void place_row(void *context, size_t y, int worker)
 {
     (void)worker;
-    const struct work *w = context;
+    const struct maps_fitting *w = context;
     for (int x = 0; x < w->photos.width; x++)
         if (is_known(w, y * (size_t)w->photos.width + (size_t)x))
             place_pixel(w, x, (int)y);
 }
 
-static relume_status find_places(struct work *w)
+static relume_status find_places(struct maps_fitting *w)
 {
     relume_status status = relume_image_create(&w->f0, w->photos.width, w->photos.height, 1);
     for (int i = 0; !status && i < w->materials.count; i++)
@@ -365,7 +366,7 @@ static float share_explained(const struct look *k, const float colour[3])
     return (float)good / (float)k->known;
 }
 
-static void colour_pixel(const struct work *w, const struct look *k, size_t at)
+static void colour_pixel(const struct maps_fitting *w, const struct look *k, size_t at)
 {
     struct relume_maps *out = w->out;
     const struct gloss g = {out->metallic.data[at] > 0.5f, w->f0.data[at], out->roughness.data[at]};
@@ -378,7 +379,7 @@ static void colour_pixel(const struct work *w, const struct look *k, size_t at)
 
 static void colour_row(void *context, size_t y, int worker)
 {
-    const struct work *w = context;
+    const struct maps_fitting *w = context;
     const size_t width = (size_t)w->photos.width;
     struct look k;
     for (size_t x = 0; x < width; x++) {
@@ -389,7 +390,7 @@ static void colour_row(void *context, size_t y, int worker)
     }
 }
 
-static relume_status find_relief(struct work *w)
+static relume_status find_relief(struct maps_fitting *w)
 {
     struct relume_maps *out = w->out;
     const struct relume_geometry *g = &out->geometry;
@@ -407,7 +408,7 @@ static relume_status find_relief(struct work *w)
 }
 
 // The codebook as it is shown, and how many pixels are nearest to each entry.
-static void report_materials(const struct work *w)
+static void report_materials(const struct maps_fitting *w)
 {
     struct relume_maps *out = w->out;
     size_t known = 0, near[RELUME_MAPS_MOST_MATERIALS] = {0};
@@ -434,7 +435,7 @@ static void report_materials(const struct work *w)
             (double)w->materials.gloss[i].roughness, (double)near[i] / (double)known};
 }
 
-static relume_status judge(struct work *w)
+static relume_status judge(struct maps_fitting *w)
 {
     struct relume_maps *out = w->out;
     int some[MOST_JUDGED];
@@ -473,7 +474,7 @@ void relume_maps_destroy(struct relume_maps *maps)
     *maps = (struct relume_maps){0};
 }
 
-static relume_status fit(struct work *w)
+static relume_status fit(struct maps_fitting *w)
 {
     const struct relume_maps_params *p = &w->params;
     relume_status status = find_shape(w);
@@ -508,7 +509,7 @@ static relume_status fit(struct work *w)
 relume_status relume_maps_fit(struct relume_maps *out, const relume_capture *capture,
                               const struct relume_maps_params *params)
 {
-    struct work w = {
+    struct maps_fitting w = {
         .params = PARAMS_WORK(relume_maps_params, params), .out = out, .capture = capture};
     *out = (struct relume_maps){.width = relume_capture_width(capture),
                                 .height = relume_capture_height(capture)};

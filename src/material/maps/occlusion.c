@@ -9,6 +9,7 @@
 #include "core/base/thread.h"
 #include "core/math/bilinear.h"
 #include "core/math/vec.h"
+#include "material/maps/maps.h"
 
 #include <relume/material/maps.h>
 

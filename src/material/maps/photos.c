@@ -1,6 +1,7 @@
 // photos.c - the photographs of a view, pixel by pixel
 #include "material/maps/photos.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"

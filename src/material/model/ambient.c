@@ -7,6 +7,9 @@
 #include "material/model/ambient.h"
 
 #include "core/base/memory.h"
+#include "material/btf/values.h"
+#include "material/model/environment.h"
+#include "relight/light/environment.h"
 
 static vec3 to_sample(const struct relume_btf_frame *f, vec3 d)
 {

@@ -2,9 +2,10 @@
 #ifndef BTF_MODEL_AMBIENT_H
 #define BTF_MODEL_AMBIENT_H
 
+#include "material/btf/values.h"
+#include "material/model/environment.h"
 #include "material/model/model.h"
-
-#include <relume/material/btf_environment.h>
+#include "relight/light/environment.h"
 
 struct relume_prefiltered_maps {
     int width, height;

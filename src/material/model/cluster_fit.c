@@ -8,7 +8,7 @@
 enum { REDUCED = 48 };
 enum { GROUP = 64 };  // clusters between two words of progress
 
-struct work {
+struct cluster_loop {
     const struct fitting *f;
     struct members members;
     bool (*fit)(const void *context, size_t cluster, const float *values);
@@ -36,7 +36,7 @@ static bool mean(const struct members *m, size_t cluster, const relume_btf *btf,
 static void fit_one(void *context, size_t item, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct cluster_loop *w = context;
     const size_t cluster = w->first + item;
     float *values = mem_array(3 * model_pairs(w->f->out), sizeof *values);
     if (!values || !mean(&w->members, cluster, w->f->btf, values) ||
@@ -45,7 +45,7 @@ static void fit_one(void *context, size_t item, int worker)
     mem_free(values);
 }
 
-static relume_status fit_all(struct work *w)
+static relume_status fit_all(struct cluster_loop *w)
 {
     const size_t clusters = (size_t)w->f->out->clusters;
     for (; w->first < clusters; w->first += GROUP) {
@@ -78,7 +78,7 @@ relume_status clusters_fit(const struct fitting *f, int which,
                            const void *context)
 {
     const size_t texels = f->out->texels;
-    struct work w = {.f = f, .members = {NULL, NULL}, .fit = fit, .context = context};
+    struct cluster_loop w = {.f = f, .members = {NULL, NULL}, .fit = fit, .context = context};
     int *number = mem_array(texels, sizeof *number);
     relume_status status = number ? cluster(f, number, &w.members) : RELUME_ENOMEM;
     if (!status)

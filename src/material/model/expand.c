@@ -1,5 +1,6 @@
 // expand.c - a model back to values
 #include "core/base/params.h"
+#include "material/btf/values.h"
 #include "material/model/model.h"
 
 static void show(const void *context, int view, int light, float *rgb)

@@ -1,11 +1,12 @@
 // fields.c - fits and evaluates reflectance fields with non-linear lobes (thesis, Eq. 3.1)
 #include "material/model/fields.h"
 
-#include "core/base/memory.h"
-#include "material/model/ambient.h"
 #include "core/base/half.h"
+#include "core/base/memory.h"
 #include "core/math/lsq.h"
 #include "core/math/luminance.h"
+#include "material/model/ambient.h"
+#include "material/model/environment.h"
 
 #include <string.h>
 

@@ -4,6 +4,7 @@
 #ifndef BTF_MODEL_FIELDS_H
 #define BTF_MODEL_FIELDS_H
 
+#include "material/model/environment.h"
 #include "material/model/lobes.h"
 
 // The arrays of a model that keeps fields, `entries` of them: 6 bytes each and 38 a view with two

@@ -31,7 +31,7 @@ bool gbrdf_file_named(const char *path)
 }
 
 // Where a value of a map lies: distributions stand side by side in their part.
-static size_t place(const relume_btf_fitted *m, int part, int x, int y)
+static size_t texel_offset(const relume_btf_fitted *m, int part, int x, int y)
 {
     return part == NDF_PART
                ? ((size_t)(x / NDF_SIDE) * NDF_SIDE + (size_t)y) * NDF_SIDE + (size_t)(x % NDF_SIDE)
@@ -65,7 +65,7 @@ static relume_status fill_rows(void *context, int row, int rows, void *samples)
     for (int y = row; y < row + rows; y++)
         for (int c = channels - 1; c >= 0; c--)
             for (int x = 0; x < width; x++, to += bytes) {
-                const size_t at = place(s->m, s->part, x, y);
+                const size_t at = texel_offset(s->m, s->part, x, y);
                 if (parts[s->part].sample == EXR_SAMPLE_UINT)
                     *(uint32_t *)to = ((const uint8_t *)a->data)[at];
                 else
@@ -228,7 +228,7 @@ static void store_row(const relume_btf_fitted *m, int part, int y, int channel, 
     const struct model_array *a = &m->array[part];
     const size_t channels = (size_t)parts[part].channels;
     for (int x = 0; x < part_width(m, part); x++) {
-        const size_t at = place(m, part, x, y);
+        const size_t at = texel_offset(m, part, x, y);
         // labels that no byte holds must not become others
         if (parts[part].sample == EXR_SAMPLE_UINT)
             ((uint8_t *)a->data)[at] = row[x] >= 0.0f && row[x] < 255.0f ? (uint8_t)row[x] : 255;

@@ -2,6 +2,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "material/btf/values.h"
 #include "material/model/model.h"
 
 #include <string.h>

@@ -1,10 +1,11 @@
 // model.c - what a model of a BTF is: some arrays, a way to fill them, a way to read a value back
 #include "material/model/model.h"
 
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
-#include "core/base/half.h"
+#include "material/btf/values.h"
 
 #include <string.h>
 

@@ -6,8 +6,10 @@
 #ifndef BTF_MODEL_MODEL_H
 #define BTF_MODEL_MODEL_H
 
-#include "material/btf/btf.h"
 #include "core/base/half.h"
+#include "material/btf/btf.h"
+#include "material/btf/values.h"
+#include "material/model/environment.h"
 
 #include <math.h>
 

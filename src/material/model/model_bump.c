@@ -3,10 +3,11 @@
 // view nearest to the pole, by photometric stereo (Woodham 1980) without the darkest and brightest
 // lights. Stereo needs what is seen, with n.l; and where values lack it, what the table says of the
 // turned light is times that light's own cosine, not that of the plane.
-#include "core/base/memory.h"
-#include "material/model/model.h"
 #include "core/base/half.h"
+#include "core/base/memory.h"
 #include "core/math/lsq.h"
+#include "material/btf/values.h"
+#include "material/model/model.h"
 
 #include <string.h>
 
@@ -21,7 +22,7 @@ static void layout(relume_btf_fitted *m)
     model_add(m, "mean", NPY_HALF, false, 0, MODEL_SHAPE((size_t)m->views, (size_t)m->lights, 3));
 }
 
-struct work {
+struct bump_fit {
     relume_btf_fitted *m;
     int top_view;
     double *mean;  // [texels][3]
@@ -67,7 +68,7 @@ static vec3 normal_of(const struct relume_btf_fitted *m, const struct sample *li
 
 static void measure(void *context, size_t texel, const float *values)
 {
-    const struct work *w = context;
+    const struct bump_fit *w = context;
     const size_t pairs = model_pairs(w->m);
     double *mean = w->mean + 3 * texel;
     struct sample list[1024];
@@ -112,7 +113,7 @@ static void average(const struct fitting *f, const double *mean)
 static relume_status fit(struct fitting *f)
 {
     relume_btf_fitted *m = f->out;
-    struct work w = {m, 0, mem_array(3 * m->texels, sizeof *w.mean)};
+    struct bump_fit w = {m, 0, mem_array(3 * m->texels, sizeof *w.mean)};
     for (int v = 1; v < m->views; v++)
         w.top_view = m->view[v].z > m->view[w.top_view].z ? v : w.top_view;
     relume_status status =

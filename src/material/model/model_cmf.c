@@ -75,7 +75,7 @@ static float map_at(const float *map, const struct place *p, int taps)
 
 // ---------------------------------------------------------------- one colour of one cluster
 
-struct work {
+struct cmf_fit {
     relume_btf_fitted *m;
     struct place *half, *difference;  // [pairs]
 };
@@ -83,7 +83,7 @@ struct work {
 enum link { VIEW, LIGHT, HALF, DIFFERENCE, LINKS };
 
 struct chain {
-    const struct work *w;
+    const struct cmf_fit *w;
     const float *value;    // [pairs][3], from this colour on
     float *factor;         // [entries][3], from this colour on
     float *map[LINKS];     // into `factor`
@@ -163,7 +163,7 @@ static void fit_chain(struct chain *s)
 
 static bool fit_mean(const void *context, size_t cluster, const float *value)
 {
-    const struct work *w = context;
+    const struct cmf_fit *w = context;
     const relume_btf_fitted *m = w->m;
     const size_t pairs = model_pairs(m), n = entries(m);
     float *factor = mem_array(3 * n, sizeof *factor);
@@ -194,9 +194,9 @@ static relume_status fit(struct fitting *f)
 {
     const relume_btf_fitted *m = f->out;
     const size_t lights = (size_t)m->lights;
-    struct work w = {.m = f->out,
-                     .half = mem_array(model_pairs(m), sizeof *w.half),
-                     .difference = mem_array(model_pairs(m), sizeof *w.difference)};
+    struct cmf_fit w = {.m = f->out,
+                        .half = mem_array(model_pairs(m), sizeof *w.half),
+                        .difference = mem_array(model_pairs(m), sizeof *w.difference)};
     relume_status status = w.half && w.difference ? RELUME_OK : RELUME_ENOMEM;
     for (size_t i = 0; i < model_pairs(m) && !status; i++)
         places_of(m->view[i / lights], m->light[i % lights], &w.half[i], &w.difference[i]);

@@ -5,13 +5,14 @@
 // (2003 paper, Eqs. 2 to 4). Lobes and T are of luminance, the rho give the colour. The right sides
 // are BRDFs: where values include n.l, they are multiplied by it, else not even a white Lambertian
 // surface could be fitted.
-#include "core/base/memory.h"
-#include "material/model/ambient.h"
-#include "material/model/lobes.h"
 #include "core/base/half.h"
+#include "core/base/memory.h"
 #include "core/math/lsq.h"
 #include "core/math/luminance.h"
 #include "core/math/sort.h"
+#include "material/model/ambient.h"
+#include "material/model/environment.h"
+#include "material/model/lobes.h"
 
 #include <string.h>
 
@@ -39,7 +40,7 @@ static void layout_scaled(relume_btf_fitted *m)
     model_add(m, "factor", NPY_FLOAT, true, 0, MODEL_SHAPE(m->texels, (size_t)m->views));
 }
 
-struct work {
+struct laf_fit {
     relume_btf_fitted *m;
     bool scaled;
     double (*product)[3];  // [pairs]: v * l by components
@@ -60,7 +61,7 @@ struct texel {
 };
 
 // What most pairs reach is treated as Lambertian; lobes add to it.
-static void subtract_diffuse(const struct work *w, struct texel *s)
+static void subtract_diffuse(const struct laf_fit *w, struct texel *s)
 {
     const size_t n = w->fitted_count;
     for (size_t i = 0; i < n; i++)
@@ -74,7 +75,7 @@ static void subtract_diffuse(const struct work *w, struct texel *s)
 }
 
 // The lobe of a few usual ones that takes most from the rest; it is subtracted from it.
-static struct lobe start(const struct work *w, double *rest)
+static struct lobe start(const struct laf_fit *w, double *rest)
 {
     static const struct lobe usual[] = {
         {{-0.577, -0.577, 0.577}, 3.0},  {{-0.577, -0.577, 0.577}, 10.0},
@@ -104,7 +105,7 @@ static struct lobe start(const struct work *w, double *rest)
     return best;
 }
 
-static void fit_lobes(const struct work *w, size_t texel, const float *values, struct texel *s)
+static void fit_lobes(const struct laf_fit *w, size_t texel, const float *values, struct texel *s)
 {
     const int count = w->m->lobes;
     struct lobe lobe[MODEL_LOBES];
@@ -137,7 +138,7 @@ static void fit_lobes(const struct work *w, size_t texel, const float *values, s
 }
 
 // The colours, by least squares under the factors as they are.
-static bool fit_albedo(const struct work *w, const float *values, struct texel *s)
+static bool fit_albedo(const struct laf_fit *w, const float *values, struct texel *s)
 {
     const int n = w->m->lobes + 1;
     double gram[UNKNOWNS * UNKNOWNS] = {0.0}, right[3 * UNKNOWNS] = {0.0}, trace = 0.0;
@@ -167,7 +168,7 @@ static bool fit_albedo(const struct work *w, const float *values, struct texel *
 }
 
 // The best factor of each view for the colours as they are.
-static void fit_factors(const struct work *w, const float *values, struct texel *s)
+static void fit_factors(const struct laf_fit *w, const float *values, struct texel *s)
 {
     const size_t lights = (size_t)w->m->lights, lobes = (size_t)w->m->lobes;
     for (size_t v = 0; v < (size_t)w->m->views; v++) {
@@ -185,7 +186,7 @@ static void fit_factors(const struct work *w, const float *values, struct texel 
     }
 }
 
-static bool fit_colors(const struct work *w, const float *values, struct texel *s)
+static bool fit_colors(const struct laf_fit *w, const float *values, struct texel *s)
 {
     for (int v = 0; v < w->m->views; v++)
         s->factor[v] = 1.0;
@@ -197,7 +198,7 @@ static bool fit_colors(const struct work *w, const float *values, struct texel *
     return good;
 }
 
-static void store(const struct work *w, size_t texel, const struct texel *s)
+static void store(const struct laf_fit *w, size_t texel, const struct texel *s)
 {
     const size_t lobes = (size_t)w->m->lobes, views = (size_t)w->m->views;
     for (size_t c = 0; c < 3; c++) {
@@ -212,7 +213,7 @@ static void store(const struct work *w, size_t texel, const struct texel *s)
 
 static void fit_texel(void *context, size_t texel, const float *values)
 {
-    struct work *w = context;
+    struct laf_fit *w = context;
     const size_t pairs = model_pairs(w->m);
     struct texel s = {
         .y = mem_array(w->fitted_count, sizeof *s.y),
@@ -239,7 +240,7 @@ static relume_status fit_all(struct fitting *f, bool scaled)
 {
     relume_btf_fitted *m = f->out;
     const size_t pairs = model_pairs(m), lights = (size_t)m->lights;
-    struct work w = {.m = m, .scaled = scaled};
+    struct laf_fit w = {.m = m, .scaled = scaled};
     // odd strides come to every light, whatever the size of the set
     for (w.stride = 1; (pairs + w.stride - 1) / w.stride > FITTED_PAIRS || w.stride % 2 == 0;)
         w.stride++;

@@ -1,8 +1,9 @@
 // model_lit.c - a lit texture, the plainest of the papers' comparisons (2003 paper, Figs. 5 and 6):
 //     BTF(x, v, l) ~ texture(x) n.l
 // The texture is the least squares of all pairs.
-#include "material/model/ambient.h"
 #include "core/base/half.h"
+#include "material/model/ambient.h"
+#include "material/model/environment.h"
 
 enum { TEXTURE };
 

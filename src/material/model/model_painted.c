@@ -10,6 +10,7 @@
 #include "material/model/ambient.h"
 
 #include "core/base/half.h"
+#include "material/model/environment.h"
 
 enum { DIFFUSE, SPECULAR, SHAPE };
 static const double DIELECTRIC = 0.04;

@@ -52,7 +52,7 @@ struct plane {
     int bits;
 };
 
-struct work {
+struct qmf_fit {
     struct fitting *f;
     struct reduced r;
     double energy[1024];  // [component]
@@ -63,7 +63,7 @@ struct work {
 };
 
 // Turn the patterns' colours, most of the energy first.
-static bool turn_colors(struct work *w)
+static bool turn_colors(struct qmf_fit *w)
 {
     double gram[9] = {0.0}, values[3];
     for (int k = 0; k < w->r.count; k++)
@@ -88,7 +88,7 @@ static bool turn_colors(struct work *w)
 static void measure_component(void *context, size_t k, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct qmf_fit *w = context;
     const size_t count = (size_t)w->r.count;
     struct plane *p = w->plane + k * PLANES;
     p[0] =
@@ -122,7 +122,7 @@ static double choose_bits(struct plane *p, double price)
     return least;
 }
 
-static size_t bytes_of(const struct work *w, size_t *texel, size_t *pair)
+static size_t bytes_of(const struct qmf_fit *w, size_t *texel, size_t *pair)
 {
     size_t score_bits = 0, pattern_bits = 0, used = 0;
     for (int k = 0; k < w->r.count; k++) {
@@ -137,7 +137,7 @@ static size_t bytes_of(const struct work *w, size_t *texel, size_t *pair)
            sizeof(float[9]);
 }
 
-static size_t allocate(struct work *w, double price, size_t *texel, size_t *pair)
+static size_t allocate(struct qmf_fit *w, double price, size_t *texel, size_t *pair)
 {
     for (int k = 0; k < w->r.count; k++) {
         struct plane *p = w->plane + k * PLANES;
@@ -155,7 +155,7 @@ static size_t allocate(struct work *w, double price, size_t *texel, size_t *pair
 }
 
 // The lowest price at which all fits into `most` bytes.
-static void spend(struct work *w, double most, size_t *texel, size_t *pair)
+static void spend(struct qmf_fit *w, double most, size_t *texel, size_t *pair)
 {
     double low = 1e-14 * w->energy[0], high = w->energy[0] + 1e-30;
     for (int i = 0; i < 60; i++) {
@@ -173,7 +173,7 @@ static void spend(struct work *w, double most, size_t *texel, size_t *pair)
 static void write_texel(void *context, size_t texel, int worker)
 {
     (void)worker;
-    const struct work *w = context;
+    const struct qmf_fit *w = context;
     const relume_btf_fitted *m = w->f->out;
     uint8_t *row = (uint8_t *)m->array[SCORE].data + texel * (size_t)m->texel_bytes;
     size_t at = 0;
@@ -188,7 +188,7 @@ static void write_texel(void *context, size_t texel, int worker)
 static void write_pair(void *context, size_t pair, int worker)
 {
     (void)worker;
-    const struct work *w = context;
+    const struct qmf_fit *w = context;
     const relume_btf_fitted *m = w->f->out;
     uint8_t *row = (uint8_t *)m->array[PATTERN].data + pair * (size_t)m->pair_bytes;
     size_t at = 0;
@@ -202,7 +202,7 @@ static void write_pair(void *context, size_t pair, int worker)
     }
 }
 
-static void write_tables(const struct work *w)
+static void write_tables(const struct qmf_fit *w)
 {
     const relume_btf_fitted *m = w->f->out;
     uint8_t *width = m->array[WIDTH].data;
@@ -218,7 +218,7 @@ static void write_tables(const struct work *w)
         model_floats(m, COLOR)[i] = (float)w->color[i];
 }
 
-static relume_status write(struct work *w)
+static relume_status write(struct qmf_fit *w)
 {
     relume_btf_fitted *m = w->f->out;
     m->components = 0;
@@ -233,7 +233,7 @@ static relume_status write(struct work *w)
     return RELUME_OK;
 }
 
-static relume_status quantise(struct work *w, double most)
+static relume_status quantise(struct qmf_fit *w, double most)
 {
     size_t texel, pair;
     for (size_t i = 0; i < w->texels; i++)
@@ -255,7 +255,7 @@ static relume_status quantise(struct work *w, double most)
 static relume_status fit(struct fitting *f)
 {
     const relume_btf_fitted *m = f->out;
-    struct work w = {.f = f, .texels = m->texels, .pairs = model_pairs(m)};
+    struct qmf_fit w = {.f = f, .texels = m->texels, .pairs = model_pairs(m)};
     const double measured = (double)relume_btf_bytes(m->width, m->height, m->views, m->lights);
     const double most = measured / (f->ratio > 0.0 ? f->ratio : USUAL_RATIO);
     const double worth = 8.0 * most / (LEAST_BITS * (double)(w.texels + w.pairs));

@@ -1,5 +1,6 @@
 // model_rfnl.c - reflectance fields with non-linear lobes for every texel and view (Meseth,
 // Mueller, Klein 2003; thesis, Eq. 3.1)
+#include "material/model/environment.h"
 #include "material/model/fields.h"
 
 static void layout(relume_btf_fitted *m)
@@ -7,21 +8,21 @@ static void layout(relume_btf_fitted *m)
     fields_layout(m, m->texels, true);
 }
 
-struct work {
+struct rfnl_fit {
     struct fields fields;
     bool failed;  // set by any worker, read after all
 };
 
 static void fit_texel(void *context, size_t texel, const float *values)
 {
-    struct work *w = context;
+    struct rfnl_fit *w = context;
     if (!fields_fit(&w->fields, texel, values))
         __atomic_store_n(&w->failed, true, __ATOMIC_RELAXED);
 }
 
 static relume_status fit(struct fitting *f)
 {
-    struct work w = {.failed = false};
+    struct rfnl_fit w = {.failed = false};
     relume_status status = fields_start(&w.fields, f->out);
     if (!status)
         status = btf_for_texels(f->btf, f->threads, f->log, "fitting", &w, fit_texel);

@@ -1,5 +1,6 @@
 // model_rfnlc.c - clustered reflectance fields (thesis, Procedure 1): texels in clusters, fields
 // with lobes fitted to the mean of each cluster, one index a texel
+#include "material/model/environment.h"
 #include "material/model/fields.h"
 #include "material/model/reduce.h"
 

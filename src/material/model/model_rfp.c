@@ -23,14 +23,14 @@ static void layout(relume_btf_fitted *m)
               MODEL_SHAPE(m->texels, (size_t)m->views, TERMS, 3));
 }
 
-struct work {
+struct rfp_fit {
     relume_btf_fitted *m;
     double *solution;  // [lights][TERMS]: from samples to coefficients
 };
 
 static void fit_texel(void *context, size_t texel, const float *values)
 {
-    const struct work *w = context;
+    const struct rfp_fit *w = context;
     const size_t views = (size_t)w->m->views, lights = (size_t)w->m->lights;
     uint16_t *to = model_halfs(w->m, COEFFICIENT) + texel * views * TERMS * 3;
     for (size_t v = 0; v < views; v++, to += TERMS * 3) {
@@ -46,7 +46,7 @@ static void fit_texel(void *context, size_t texel, const float *values)
 }
 
 // (T' T)^-1 T', transposed.
-static bool solve(struct work *w)
+static bool solve(struct rfp_fit *w)
 {
     const size_t lights = (size_t)w->m->lights;
     double gram[TERMS * TERMS] = {0.0}, trace = 0.0;
@@ -62,7 +62,7 @@ static bool solve(struct work *w)
 
 static relume_status fit(struct fitting *f)
 {
-    struct work w = {f->out, mem_array((size_t)f->out->lights * TERMS, sizeof *w.solution)};
+    struct rfp_fit w = {f->out, mem_array((size_t)f->out->lights * TERMS, sizeof *w.solution)};
     relume_status status = w.solution && solve(&w) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = btf_for_texels(f->btf, f->threads, f->log, "fitting", &w, fit_texel);

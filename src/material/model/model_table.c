@@ -1,6 +1,7 @@
 // model_table.c - the measured values themselves as a model: what takes models takes BTFs
-#include "material/model/model.h"
 #include "core/base/half.h"
+#include "material/btf/values.h"
+#include "material/model/model.h"
 
 static void layout(relume_btf_fitted *m)
 {

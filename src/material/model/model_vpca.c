@@ -1,11 +1,12 @@
 // model_vpca.c - principal components of the pictures of each view (Sattler, Sarlette, Klein 2003):
 //     BTF(x, v, l) ~ mean_v(x) + sum_i weight_i(v, l) E_i(x, v)
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
-#include "material/model/model.h"
-#include "core/base/half.h"
 #include "core/math/lsq.h"
+#include "material/btf/values.h"
+#include "material/model/model.h"
 
 #include <string.h>
 
@@ -20,7 +21,7 @@ static void layout(relume_btf_fitted *m)
     model_add(m, "weight", NPY_HALF, false, 0, MODEL_SHAPE(v, (size_t)m->lights, k));
 }
 
-struct work {
+struct vpca_fit {
     struct fitting *f;
     bool failed;  // set by any worker, read after all
 };
@@ -109,7 +110,7 @@ static bool solve(struct view *w, const struct fitting *f)
 static void fit_view(void *context, size_t item, int worker)
 {
     (void)worker;
-    struct work *work = context;
+    struct vpca_fit *work = context;
     const relume_btf_fitted *m = work->f->out;
     const size_t n = (size_t)m->lights, k = (size_t)m->components;
     struct view w = {
@@ -132,7 +133,7 @@ static void fit_view(void *context, size_t item, int worker)
 
 static relume_status fit(struct fitting *f)
 {
-    struct work work = {f, false};
+    struct vpca_fit work = {f, false};
     thread_for(f->threads, (size_t)f->out->views, fit_view, &work);
     return work.failed ? RELUME_ENOMEM : RELUME_OK;
 }

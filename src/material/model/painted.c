@@ -8,6 +8,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "material/btf/btf.h"
+#include "material/btf/values.h"
 #include "material/model/model.h"
 
 #include <relume/image.h>

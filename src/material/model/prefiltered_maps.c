@@ -13,6 +13,8 @@
 #include "core/base/thread.h"
 #include "core/math/bilinear.h"
 #include "core/math/luminance.h"
+#include "material/model/environment.h"
+#include "relight/light/environment.h"
 
 #include <string.h>
 

@@ -5,18 +5,19 @@
 // that the leading directions win; then the small problem is solved.
 #include "material/model/reduce.h"
 
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
-#include "core/base/half.h"
 #include "core/math/lsq.h"
 #include "core/math/random.h"
+#include "material/btf/values.h"
 
 #include <string.h>
 
 enum { SPARE = 16, POWERS = 2, GROUP = 8, BLOCK = 1024 };
 
-struct work {
+struct reduction {
     const struct fitting *f;
     size_t texels, slab, values;  // slab: rows of A that one view has
     int width;                    // of the sketch
@@ -29,7 +30,7 @@ struct work {
     size_t first_view;
 };
 
-static void free_work(struct work *w)
+static void free_work(struct reduction *w)
 {
     mem_free(w->across);
     mem_free(w->across_turned);
@@ -41,7 +42,7 @@ static void free_work(struct work *w)
     }
 }
 
-static bool alloc_work(struct work *w)
+static bool alloc_work(struct reduction *w)
 {
     const size_t width = (size_t)w->width;
     w->across = mem_array(width * w->texels, sizeof(float));
@@ -57,7 +58,7 @@ static bool alloc_work(struct work *w)
     return good;
 }
 
-static void load_view(const struct work *w, int view, float *out)
+static void load_view(const struct reduction *w, int view, float *out)
 {
     for (int l = 0; l < w->f->btf->info.lights; l++) {
         const uint16_t *p = relume_btf_picture(w->f->btf, view, l);
@@ -73,7 +74,7 @@ static void load_view(const struct work *w, int view, float *out)
 static void across_view(void *context, size_t item, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct reduction *w = context;
     const size_t v = w->first_view + item;
     load_view(w, (int)v, w->view[item]);
     lsq_multiply(w->width, (int)w->texels, (int)w->slab,
@@ -84,7 +85,7 @@ static void across_view(void *context, size_t item, int worker)
 static void along_view(void *context, size_t item, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct reduction *w = context;
     const size_t v = w->first_view + item;
     load_view(w, (int)v, w->view[item]);
     lsq_multiply((int)w->slab, w->width, (int)w->texels, w->view[item], (int)w->texels,
@@ -99,7 +100,7 @@ static void turn(const float *from, size_t rows, size_t columns, float *to)
 }
 
 // across = along' A, its parts added in the order of the views.
-static void multiply_across(struct work *w)
+static void multiply_across(struct reduction *w)
 {
     const size_t views = w->values / w->slab, size = (size_t)w->width * w->texels;
     for (size_t v = 0; v < views; v++)
@@ -116,7 +117,7 @@ static void multiply_across(struct work *w)
 }
 
 // along = A across'.
-static void multiply_along(struct work *w)
+static void multiply_along(struct reduction *w)
 {
     const size_t views = w->values / w->slab;
     turn(w->across, (size_t)w->width, w->texels, w->across_turned);
@@ -144,7 +145,7 @@ static bool gram_of(const float *columns, size_t n, int m, double *gram)
 }
 
 // along[values][width] -> orthonormal columns, by the Cholesky factor of their Gram matrix.
-static bool orthonormalise(struct work *w)
+static bool orthonormalise(struct reduction *w)
 {
     const size_t m = (size_t)w->width;
     double *gram = mem_array(m * m, sizeof *gram);
@@ -176,7 +177,7 @@ static bool orthonormalise(struct work *w)
 }
 
 // The singular directions inside the sketch: scores and basis.
-static bool finish(struct work *w, struct reduced *out)
+static bool finish(struct reduction *w, struct reduced *out)
 {
     const size_t m = (size_t)w->width, count = (size_t)out->count;
     double *gram = mem_array(m * m, sizeof *gram), *values = mem_array(count, sizeof *values);
@@ -204,7 +205,7 @@ static bool finish(struct work *w, struct reduced *out)
     return good;
 }
 
-static relume_status run(struct work *w, struct reduced *out)
+static relume_status reduce_matrix(struct reduction *w, struct reduced *out)
 {
     struct random random = random_stream(w->f->seed, w->values, w->texels);
     for (size_t i = 0; i < w->values * (size_t)w->width; i++)
@@ -224,7 +225,7 @@ static relume_status run(struct work *w, struct reduced *out)
 relume_status reduce_make(struct reduced *out, const struct fitting *f, int count)
 {
     const relume_btf_fitted *m = f->out;
-    struct work w = {
+    struct reduction w = {
         .f = f,
         .texels = m->texels,
         .slab = 3 * (size_t)m->lights,
@@ -237,7 +238,7 @@ relume_status reduce_make(struct reduced *out, const struct fitting *f, int coun
     out->score = mem_array(w.texels * (size_t)out->count, sizeof *out->score);
     out->basis = mem_array(w.values * (size_t)out->count, sizeof *out->basis);
     relume_status status =
-        out->score && out->basis && alloc_work(&w) ? run(&w, out) : RELUME_ENOMEM;
+        out->score && out->basis && alloc_work(&w) ? reduce_matrix(&w, out) : RELUME_ENOMEM;
     free_work(&w);
     if (status)
         reduce_free(out);

@@ -1,5 +1,6 @@
 // sample.c - values between texels of a sample that is repeated without end, and a model's arrays
 #include "material/model/model.h"
+#include "material/btf/values.h"
 
 // The texels around a place, and their weights.
 struct corners {
@@ -41,33 +42,6 @@ void relume_btf_sample(const relume_btf *btf, double x, double y, bool bilinear,
         if (c.weight[i / 2][i % 2] == 0.0)
             continue;
         relume_btf_evaluate(btf, c.x[i % 2], c.y[i / 2], view, light, value);
-        add(sum, c.weight[i / 2][i % 2], value);
-    }
-    for (int k = 0; k < 3; k++)
-        rgb[k] = (float)sum[k];
-}
-
-void relume_btf_fitted_sample(const relume_btf_fitted *m, double x, double y, bool bilinear,
-                              struct relume_vec3 view, struct relume_vec3 light, float rgb[3])
-{
-    const struct corners c = corners_of(x, y, bilinear, m->width, m->height);
-    const double place[2] = {x, y};
-    double sum[3] = {0.0, 0.0, 0.0};
-    rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    if (!(view.z > 0.0) || !(light.z > 0.0))
-        return;
-    struct model_blend at = {relume_direction_mesh_at(m->view_mesh, view),
-                             relume_direction_mesh_at(m->light_mesh, light), view, light, NULL};
-    if (bilinear && m->model->continuous) {
-        at.place = place;
-        model_blend(m, 0, &at, rgb);
-        return;
-    }
-    for (int i = 0; i < 4; i++) {
-        float value[3];
-        if (c.weight[i / 2][i % 2] == 0.0)
-            continue;
-        model_blend(m, (size_t)c.y[i / 2] * (size_t)m->width + (size_t)c.x[i % 2], &at, value);
         add(sum, c.weight[i / 2][i % 2], value);
     }
     for (int k = 0; k < 3; k++)

@@ -7,6 +7,8 @@
 #include "material/model/ambient.h"
 
 #include "core/base/memory.h"
+#include "material/btf/values.h"
+#include "material/model/environment.h"
 
 static const double SHARPEST = 128.0;  // of the maps
 

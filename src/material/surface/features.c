@@ -8,12 +8,13 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/lsq.h"
+#include "material/btf/values.h"
 
 #include <string.h>
 
 enum { SIDE = 8, PICTURES = SIDE * SIDE, VALUES = 3 * PICTURES, CHUNK = 64 };
 
-struct work {
+struct feature_pictures {
     const relume_btf_fitted *m;
     struct model_blend at[PICTURES];
     float *values;  // [texels][VALUES], over sqrt(VALUES)
@@ -22,7 +23,7 @@ struct work {
 static void load_chunk(void *context, size_t item, int worker)
 {
     (void)worker;
-    struct work *w = context;
+    struct feature_pictures *w = context;
     const size_t from = item * CHUNK, end = from + CHUNK;
     for (size_t i = from; i < (end < w->m->texels ? end : w->m->texels); i++)
         for (int p = 0; p < PICTURES; p++) {
@@ -35,7 +36,7 @@ static void load_chunk(void *context, size_t item, int worker)
 
 // Views and lights spread over those of the model, in an order that pairs every view with every
 // light.
-static void choose_pictures(struct work *w)
+static void choose_pictures(struct feature_pictures *w)
 {
     for (int i = 0; i < PICTURES; i++) {
         const vec3 v = w->m->view[i / SIDE * w->m->views / SIDE];
@@ -47,7 +48,7 @@ static void choose_pictures(struct work *w)
     }
 }
 
-static bool find_components(const struct work *w, double *vectors)
+static bool find_components(const struct feature_pictures *w, double *vectors)
 {
     double values[FEATURES];
     double *gram = mem_zeroed((size_t)VALUES * VALUES, sizeof *gram);
@@ -65,7 +66,7 @@ static bool find_components(const struct work *w, double *vectors)
     return good;
 }
 
-static void project(const struct work *w, const double *vectors, struct features *out)
+static void project(const struct feature_pictures *w, const double *vectors, struct features *out)
 {
     for (size_t i = 0; i < w->m->texels; i++)
         for (int k = 0; k < FEATURES; k++) {
@@ -78,7 +79,7 @@ static void project(const struct work *w, const double *vectors, struct features
 
 relume_status features_make(struct features *out, const relume_btf_fitted *sample, int threads)
 {
-    struct work w = {.m = sample};
+    struct feature_pictures w = {.m = sample};
     double *vectors = mem_array((size_t)FEATURES * VALUES, sizeof *vectors);
     *out = (struct features){.width = sample->width, .height = sample->height};
     out->texel = mem_array(sample->texels, sizeof *out->texel);

@@ -43,7 +43,7 @@ static relume_status open_numbers(relume_btf_map **out, const char *path, int sa
 }
 
 // From a part of the side to a texel; false outside.
-static bool place(uint32_t *out, float part, int side)
+static bool place_texel(uint32_t *out, float part, int side)
 {
     if (!(part >= 0.0f && part <= 1.0f))
         return false;
@@ -68,7 +68,7 @@ static relume_status open_picture(relume_btf_map **out, const char *path, int sa
     for (size_t i = 0; !status && i < map_texels(&s); i++) {
         const float *p = image.data + 3 * i;
         uint32_t x, y;
-        if (place(&x, p[0], sample_width) && place(&y, p[1], sample_height))
+        if (place_texel(&x, p[0], sample_width) && place_texel(&y, p[1], sample_height))
             (*out)->texel[i] = y * (uint32_t)sample_width + x;
         else
             status = log_fail(log, RELUME_EDAMAGED,

@@ -5,6 +5,9 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/math/bilinear.h"
+#include "material/btf/values.h"
+#include "material/model/environment.h"
+#include "material/surface/texels.h"
 
 // Footprints rounder than 1.06 count as round: their middle is enough. Longer ones than 7 to 1 take
 // a coarser level.

@@ -3,7 +3,10 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
+#include "material/model/environment.h"
 #include "material/surface/surface.h"
+#include "material/surface/texels.h"
+#include "relight/light/environment.h"
 
 static const double TO_RADIANS = M_PI / 180.0;
 

@@ -13,15 +13,6 @@
 
 enum { MOST_SIDE = 1 << 24, MOST_TEXELS = 1 << 30 };
 
-relume_status relume_grow_method_parse(enum relume_grow_method *out, const char *name)
-{
-    *out = RELUME_GROW_PATCH;
-    if (!strcmp(name, "patch"))
-        return RELUME_OK;
-    *out = RELUME_GROW_PIXEL;
-    return strcmp(name, "pixel") ? RELUME_EINVAL : RELUME_OK;
-}
-
 static int default_patch(const struct relume_texture *t, const struct relume_regular *r)
 {
     const int side = smaller_of(t->width, t->height);

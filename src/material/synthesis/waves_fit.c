@@ -151,8 +151,8 @@ static bool step(struct fit *f, const struct waves *from, struct waves *to, doub
     return true;
 }
 
-static void run(struct fit *f, struct waves *w, struct waves *trial, int steps, double *rest,
-                double *before)
+static void fit_steps(struct fit *f, struct waves *w, struct waves *trial, int steps, double *rest,
+                      double *before)
 {
     double damping = f->each == PLACES ? 1e-3 : 0.0;
     *rest = residual(f, w);
@@ -194,7 +194,7 @@ static relume_status fit(struct waves *w, const struct plane *plane, int each, i
         f.right = f.system + n * n;
         f.turn = f.left + pixels;
         f.column[1] = f.column[0] + plane->width;
-        run(&f, w, &trial, steps, rest, before);
+        fit_steps(&f, w, &trial, steps, rest, before);
     }
     mem_free(trial.wave);
     mem_free(f.matrix);

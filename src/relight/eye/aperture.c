@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/fnv.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <string.h>

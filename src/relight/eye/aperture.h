@@ -5,6 +5,8 @@
 #ifndef POST_APERTURE_H
 #define POST_APERTURE_H
 
+#include "relight/eye/pupil.h"
+
 #include <relume/relight/eye.h>
 
 // A square picture, texel (n / 2, n / 2) centred on the axis, row 0 at the top.

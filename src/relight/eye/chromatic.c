@@ -3,6 +3,7 @@
 // Row by row: for every wavelength two rows of the pattern become one, which is then stretched.
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "relight/eye/pattern.h"
 #include "relight/eye/psf.h"
 
 #include <math.h>

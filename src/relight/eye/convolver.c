@@ -113,7 +113,7 @@ bool convolver_fits(const convolver *c, int width, int height, int reach,
 
 // ---------------------------------------------------------------- lines in and out
 
-struct work {
+struct tile_lines {
     convolver *c;
     const float *in;
     float *out;
@@ -135,7 +135,7 @@ static int border_index(int i, int n, enum relume_glare_border border)
     return -1;
 }
 
-static float pixel_at(const struct work *w, int x, int y)
+static float pixel_at(const struct tile_lines *w, int x, int y)
 {
     const int at = border_index(x, w->c->width, w->c->border);
     return at < 0 ? 0.0f
@@ -144,7 +144,7 @@ static float pixel_at(const struct work *w, int x, int y)
 
 static void fill_tile(void *context, int row, float *line)
 {
-    const struct work *w = context;
+    const struct tile_lines *w = context;
     const convolver *const c = w->c;
     const int used_w = c->core_w + c->margin + (c->margin ? c->reach : 0);
     const int y = border_index(w->y0 - c->margin + row, c->height, c->border);
@@ -165,7 +165,7 @@ static void fill_tile(void *context, int row, float *line)
 
 static void fill_kernel(void *context, int row, float *line)
 {
-    const struct work *w = context;
+    const struct tile_lines *w = context;
     const convolver *const c = w->c;
     const size_t side = 2 * (size_t)c->reach + 1, used = 2 * (size_t)c->reach_x + 1;
     const size_t y = (size_t)(row + c->reach - c->reach_y);
@@ -175,7 +175,7 @@ static void fill_kernel(void *context, int row, float *line)
 
 static void take_row(void *context, int row, const float *line)
 {
-    const struct work *w = context;
+    const struct tile_lines *w = context;
     const convolver *const c = w->c;
     const float scale = 1.0f / ((float)c->fft_w * (float)c->fft_h);
     const int y = w->y0 + row - c->margin - c->reach_y;
@@ -186,21 +186,21 @@ static void take_row(void *context, int row, const float *line)
         to[3 * x] = scale * line[x + c->margin + c->reach_x];
 }
 
-static float *kept_columns(const struct work *w, int column)
+static float *kept_columns(const struct tile_lines *w, int column)
 {
     return w->kept + 2 * (size_t)column * (size_t)w->c->fft_h;
 }
 
 static bool keep(void *context, int column, int count, float *lines)
 {
-    const struct work *w = context;
+    const struct tile_lines *w = context;
     memcpy(kept_columns(w, column), lines, 2 * (size_t)count * (size_t)w->c->fft_h * sizeof *lines);
     return false;
 }
 
 static bool multiply(void *context, int column, int count, float *lines)
 {
-    const struct work *w = context;
+    const struct tile_lines *w = context;
     const float *const other = kept_columns(w, column);
     const size_t n = 2 * (size_t)count * (size_t)w->c->fft_h;
     for (size_t i = 0; i < n; i += 2) {
@@ -214,7 +214,7 @@ static bool multiply(void *context, int column, int count, float *lines)
 // ---------------------------------------------------------------- tiles
 
 // What `fill` makes of the first rows, as a spectrum: kept, or times what is kept and back again.
-static void transform(struct work *w, int rows, void (*fill)(void *, int, float *), bool back)
+static void transform(struct tile_lines *w, int rows, void (*fill)(void *, int, float *), bool back)
 {
     convolver *const c = w->c;
     const struct fft2d_pass pass = {.to = rows,
@@ -230,19 +230,19 @@ static void transform(struct work *w, int rows, void (*fill)(void *, int, float 
                         first + smaller_of(c->height - w->y0, c->core_h), take_row, w);
 }
 
-static void transform_tile(struct work *w, bool back)
+static void transform_tile(struct tile_lines *w, bool back)
 {
     const convolver *const c = w->c;
     transform(w, c->core_h + c->margin + (c->margin ? c->reach : 0), fill_tile, back);
 }
 
-static void transform_kernel(struct work *w, bool back)
+static void transform_kernel(struct tile_lines *w, bool back)
 {
     transform(w, 2 * w->c->reach_y + 1, fill_kernel, back);
 }
 
 // The picture's spectrum is kept, the kernel's is made, multiplied and taken back at once.
-static void run_one(struct work *w, bool same)
+static void run_one(struct tile_lines *w, bool same)
 {
     convolver *const c = w->c;
     for (w->channel = 0; w->channel < 3; w->channel++) {
@@ -255,7 +255,7 @@ static void run_one(struct work *w, bool same)
 }
 
 // The kernel's spectrum serves all tiles.
-static void run_many(struct work *w)
+static void run_many(struct tile_lines *w)
 {
     const convolver *const c = w->c;
     w->kept = c->kept[0];
@@ -273,7 +273,7 @@ static void run_many(struct work *w)
 relume_status convolver_run(convolver *c, float *out, const float *in, bool same,
                             const struct kernel *kernel)
 {
-    struct work w = {.c = c, .in = in, .out = out, .shape = kernel};
+    struct tile_lines w = {.c = c, .in = in, .out = out, .shape = kernel};
     if (c->tiles_x * c->tiles_y == 1)
         run_one(&w, same);
     else

@@ -5,6 +5,7 @@
 #include "core/math/random.h"
 #include "relight/eye/eye.h"
 #include "relight/eye/noise.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 
@@ -56,7 +57,7 @@ static void step_eye(struct relume_eye *eye, double luminance)
 }
 
 // Everything that follows from the state.
-static void place(struct relume_eye *eye)
+static void place_surfaces(struct relume_eye *eye)
 {
     struct relume_eye_state *const s = &eye->state;
     struct relume_aperture *const a = &eye->aperture;
@@ -91,7 +92,7 @@ relume_status relume_eye_advance(relume_eye *eye, double dt_s, double luminance)
     }
     while (eye->step < until)
         step_eye(eye, luminance);
-    place(eye);
+    place_surfaces(eye);
     return RELUME_OK;
 }
 
@@ -159,7 +160,7 @@ relume_status relume_eye_create(relume_eye **out, const struct relume_subject *s
     }
     place_cornea(&eye->subject, eye->disc);
     fibres_draw(&eye->subject, eye->stroke);
-    place(eye);
+    place_surfaces(eye);
     *out = eye;
     return RELUME_OK;
 }
@@ -180,7 +181,7 @@ void relume_eye_destroy(relume_eye **eye)
 void relume_eye_squint(relume_eye *eye, double squint)
 {
     eye->subject.lids.squint = squint > 0.0 ? fmin(squint, 0.99) : 0.0;
-    place(eye);
+    place_surfaces(eye);
 }
 
 const struct relume_subject *relume_eye_subject(const relume_eye *eye)

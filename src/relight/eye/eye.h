@@ -2,6 +2,8 @@
 #ifndef POST_EYE_H
 #define POST_EYE_H
 
+#include "relight/eye/pupil.h"
+
 #include <relume/relight/eye.h>
 
 // Every field within the range that eye.h states; else its dotted name and the range in words.

@@ -7,6 +7,7 @@
 #include "relight/eye/eye.h"
 
 #include "core/math/random.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 

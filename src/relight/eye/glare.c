@@ -6,44 +6,14 @@
 #include "core/base/names.h"
 #include "core/base/params.h"
 #include "core/math/luminance.h"
+#include "relight/eye/pattern.h"
+#include "relight/eye/veil.h"
 
 #include <math.h>
 #include <string.h>
 
 static const double default_fov_deg = 45.0;
 enum { DEFAULT_SOURCES = 256 };
-
-static const char *const mode_names[] = {"fft", "billboard", "hybrid", NULL};
-static const char *const border_names[] = {"zero", "clamp", "periodic", NULL};
-
-enum {
-    MODES = sizeof mode_names / sizeof *mode_names,
-    BORDERS = sizeof border_names / sizeof *border_names,
-};
-
-relume_status relume_glare_mode_parse(enum relume_glare_mode *out, const char *name)
-{
-    const int i = name_find(name, mode_names, MODES);
-    *out = (enum relume_glare_mode)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
-
-relume_status relume_glare_border_parse(enum relume_glare_border *out, const char *name)
-{
-    const int i = name_find(name, border_names, BORDERS);
-    *out = (enum relume_glare_border)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
-
-const char *const *relume_glare_mode_names(void)
-{
-    return mode_names;
-}
-
-const char *const *relume_glare_border_names(void)
-{
-    return border_names;
-}
 
 relume_status glare_defaults(struct relume_glare_params *out,
                              const struct relume_glare_params *params)

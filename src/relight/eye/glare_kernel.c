@@ -6,6 +6,7 @@
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
 #include "relight/eye/psf.h"
+#include "relight/eye/veil.h"
 
 #include <math.h>
 #include <string.h>

@@ -104,9 +104,9 @@ static relume_status need_convolver(struct veil_work *work, const struct coarse 
 }
 
 // coarse[0] of all that is seen, [1] without the sources, [2] and [3] what they become.
-static relume_status run(struct veil_work *work, struct coarse *s, float *const coarse[4],
-                         const struct kernel *far, const struct kernel *whole,
-                         const struct relume_glare_params *p)
+static relume_status draw_veil(struct veil_work *work, struct coarse *s, float *const coarse[4],
+                               const struct kernel *far, const struct kernel *whole,
+                               const struct relume_glare_params *p)
 {
     const size_t n = 3 * (size_t)s->columns * (size_t)s->rows;
     relume_status status = need_convolver(work, s, whole->reach, p);
@@ -148,7 +148,7 @@ relume_status veil_add(float *out, struct veil_work *work, const float *in, int 
             s.out = coarse[k];
             thread_for(p->threads, (size_t)s.rows, shrink_row, &s);
         }
-        status = run(work, &s, coarse, &far, &whole, p);
+        status = draw_veil(work, &s, coarse, &far, &whole, p);
     }
     if (!status) {
         s.in = coarse[3];

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/math/random.h"
 #include "relight/eye/noise.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,6 +6,7 @@
 
 #include "core/math/random.h"
 #include "core/math/scalar.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 

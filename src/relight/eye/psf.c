@@ -12,6 +12,8 @@
 #include "core/math/fft2d.h"
 #include "relight/eye/aperture.h"
 #include "relight/eye/psf.h"
+#include "relight/eye/pattern.h"
+#include "relight/eye/pupil.h"
 #include "relight/eye/slices.h"
 
 #include <math.h>

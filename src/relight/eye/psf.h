@@ -3,6 +3,8 @@
 #define POST_PSF_H
 
 #include "core/kernel/kernels.h"
+#include "relight/eye/pattern.h"
+#include "relight/eye/pupil.h"
 
 #include <relume/relight/psf.h>
 

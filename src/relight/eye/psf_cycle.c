@@ -4,11 +4,12 @@
 // eye shows after the loop's end. Patterns are light, and a mean of two of them is one.
 #include <relume/relight/psf.h>
 
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
-#include "core/base/half.h"
+#include "relight/eye/pattern.h"
 #include "relight/eye/psf.h"
 
 #include <math.h>
@@ -120,8 +121,8 @@ static void fade_over(relume_psf_cycle *c, int k, double part, relume_psf *psf)
     keep(c, k, psf);
 }
 
-static relume_status run(relume_psf_cycle *c, relume_psf *psf, relume_eye *eye,
-                         const struct relume_psf_cycle_params *p)
+static relume_status make_cycle(relume_psf_cycle *c, relume_psf *psf, relume_eye *eye,
+                                const struct relume_psf_cycle_params *p)
 {
     const double step = c->seconds / c->count;
     const int fading = (int)lrint(p->fade_s / step);
@@ -171,7 +172,7 @@ relume_status relume_psf_cycle_create(relume_psf_cycle **out, relume_psf *psf, r
     c->sum = mem_zeroed((size_t)c->count, sizeof *c->sum);
     c->shown = mem_array(3 * (size_t)c->count, texels(c) * sizeof *c->shown);
     const relume_status status =
-        c->light && c->sum && c->shown ? run(c, psf, eye, &p) : RELUME_ENOMEM;
+        c->light && c->sum && c->shown ? make_cycle(c, psf, eye, &p) : RELUME_ENOMEM;
     if (status)
         relume_psf_cycle_destroy(&c);
     *out = c;

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/fft2d.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 #include <string.h>

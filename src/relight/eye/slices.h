@@ -8,6 +8,7 @@
 #define POST_SLICES_H
 
 #include "relight/eye/aperture.h"
+#include "relight/eye/pupil.h"
 
 // Working memory for one size. Thread-safety: one thread at a time.
 struct slices;

@@ -5,6 +5,7 @@
 #include <relume/relight/psf.h>
 
 #include "core/base/log.h"
+#include "relight/eye/pattern.h"
 #include "relight/eye/psf.h"
 
 #include <math.h>

@@ -66,14 +66,6 @@ const struct relume_tone *const relume_tones[] = {
     &relume_tone_linear, &relume_tone_reinhard, &relume_tone_filmic, &relume_tone_gamma, NULL,
 };
 
-const struct relume_tone *relume_tone_find(const char *name)
-{
-    for (int i = 0; relume_tones[i]; i++)
-        if (!strcmp(relume_tones[i]->name, name))
-            return relume_tones[i];
-    return NULL;
-}
-
 relume_status relume_tone_apply(struct relume_image *image, const struct relume_tone_params *params)
 {
     const struct relume_tone_params p = PARAMS(relume_tone_params, params);

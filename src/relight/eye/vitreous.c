@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/random.h"
+#include "relight/eye/pupil.h"
 
 #include <math.h>
 

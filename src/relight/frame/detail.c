@@ -1,6 +1,7 @@
 // detail.c - a rectangle of a view in another size, of which no more is read and relit at once than
 // a band of rows: of the view itself, or of the reduced level that is fine enough
 #include "core/base/log.h"
+#include "format/pack/views.h"
 #include "relight/frame/renderer.h"
 
 #include <math.h>

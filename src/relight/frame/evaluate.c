@@ -10,6 +10,7 @@
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
 
 #include <math.h>
 #include <stdio.h>

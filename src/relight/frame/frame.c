@@ -3,7 +3,9 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "image/image/rgba8.h"
+#include "relight/frame/relighter.h"
 #include "relight/frame/renderer.h"
+#include "relight/frame/renderer_views.h"
 
 #include <string.h>
 

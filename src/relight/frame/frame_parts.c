@@ -5,8 +5,13 @@
 // shows, however many views it touches.
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
 #include "relight/frame/parts.h"
+#include "relight/frame/relighter.h"
 #include "relight/frame/renderer.h"
+#include "relight/frame/renderer_views.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,7 @@
 #include "core/base/log.h"
 #include "relight/frame/parts.h"
 #include "relight/frame/renderer.h"
+#include "relight/view/view.h"
 
 // Not of a free eye, whose plane in focus is its own.
 static relume_status check_focus(const relume_renderer *r)

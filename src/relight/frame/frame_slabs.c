@@ -1,6 +1,7 @@
 // frame_slabs.c - a frame of several slabs around an object
 #include "core/base/log.h"
 #include "relight/frame/renderer.h"
+#include "relight/view/slab_set.h"
 
 #include <relume/relight/slab_set.h>
 

@@ -2,6 +2,7 @@
 #include "relight/frame/parts.h"
 
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
 #include "image/image/image.h"
 
 uint64_t parts_codes_bytes(const struct relume_codes *codes)

@@ -2,6 +2,8 @@
 #ifndef FRAME_PARTS_H
 #define FRAME_PARTS_H
 
+#include "format/coder/coding.h"
+
 #include <relume/format/coder.h>
 
 // Of one view: the rectangle `at`, and what is known of it.

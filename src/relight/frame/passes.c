@@ -1,8 +1,11 @@
 // passes.c - what a frame's passes need of the file: normals, views towards the eye, photographs
 #include "relight/frame/passes.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/math/vec.h"
+#include "relight/normals/enhance.h"
+#include "relight/view/view.h"
 
 // As far as highlights are concerned, panoramas see the surface from their eye, planar files and a
 // slab from +z, one of several from its own.

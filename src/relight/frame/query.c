@@ -5,6 +5,9 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "relight/frame/renderer.h"
+#include "relight/frame/renderer_views.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <relume/relight/viewport.h>
 

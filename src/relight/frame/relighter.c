@@ -1,11 +1,14 @@
 // relighter.c - views relit again and again: grids, refits and pictures that are kept
-#include <relume/relight/relighter.h>
 
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "image/image/image.h"
 #include "image/image/rgba8.h"
+#include "relight/frame/relighter.h"
+#include "relight/light/environment.h"
 #include "relight/light/grid.h"
+#include "relight/light/refit.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
 #include <relume/relight/relight.h>

@@ -4,9 +4,14 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "format/coder/coding.h"
 #include "image/image/image.h"
 #include "relight/frame/parts.h"
 #include "relight/frame/passes.h"
+#include "relight/frame/relighter.h"
+#include "relight/shadow/moving.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -4,8 +4,10 @@
 
 #include "core/base/budget.h"
 #include "core/math/vec.h"
+#include "relight/frame/relighter.h"
+#include "relight/shadow/moving.h"
+#include "relight/view/view.h"
 
-#include <relume/relight/relighter.h>
 #include <relume/relight/slab_set.h>
 #include <relume/renderer.h>
 

@@ -2,6 +2,9 @@
 #include <relume/relight/viewport.h>
 
 #include "core/math/vec.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
+#include "relight/frame/viewport.h"
 
 // ---------------------------------------------------------------- of a frame
 

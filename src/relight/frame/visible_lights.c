@@ -4,6 +4,9 @@
 #include "core/base/memory.h"
 #include "core/math/bilinear.h"
 #include "relight/frame/renderer.h"
+#include "relight/frame/renderer_views.h"
+#include "relight/frame/viewport.h"
+#include "relight/light/environment.h"
 
 static const double far_away = 1e6;  // of directional lights, in widths of the picture
 enum { PATCHES = 8 };                // of an area light, along one side

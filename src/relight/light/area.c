@@ -7,6 +7,7 @@
 #include <relume/light.h>
 
 #include "core/math/vec.h"
+#include "relight/light/environment.h"
 
 #include <math.h>
 

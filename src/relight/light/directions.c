@@ -14,8 +14,10 @@
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
 #include "relight/light/cells.h"
 #include "relight/light/grid.h"
+#include "relight/light/refit.h"
 #include "relight/light/triangles.h"
 
 #include <string.h>

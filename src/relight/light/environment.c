@@ -10,7 +10,10 @@
 #include "core/math/luminance.h"
 #include "core/math/random.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
 #include "relight/light/grid.h"
+#include "relight/light/refit.h"
 
 #include <string.h>
 

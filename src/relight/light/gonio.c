@@ -10,6 +10,7 @@
 #include "core/base/params.h"
 #include "core/math/bilinear.h"
 #include "core/math/vec.h"
+#include "relight/light/environment.h"
 
 #include <string.h>
 
@@ -40,7 +41,7 @@ static int face_of(vec3 d)
 }
 
 // The face that a direction points to, and where, in texels.
-static int place(double xy[2], int side, vec3 d)
+static int place_direction(double xy[2], int side, vec3 d)
 {
     const int face = face_of(d);
     const double ahead = vec3_dot(d, faces[face].ahead);
@@ -75,7 +76,7 @@ static int within(double at, int side)
 static void copy_across(const struct relume_gonio *g, int face, int x, int y)
 {
     double xy[2];
-    const int other = place(xy, g->side, ray(g->side, face, x, y));
+    const int other = place_direction(xy, g->side, ray(g->side, face, x, y));
     memcpy(texel(g, face, x, y), texel(g, other, within(xy[0], g->side), within(xy[1], g->side)),
            3 * sizeof(float));
 }
@@ -212,7 +213,7 @@ const struct relume_image *relume_gonio_map(const relume_gonio *gonio)
 void relume_gonio_value(float rgb[3], const relume_gonio *g, struct relume_vec3 direction)
 {
     double xy[2];
-    const int face = place(xy, g->side, direction);
+    const int face = place_direction(xy, g->side, direction);
     const double x = fmin(fmax(xy[0], 0.0), g->side) - 0.5;
     const double y = fmin(fmax(xy[1], 0.0), g->side) - 0.5;
     const double left = floor(x), top = floor(y);

@@ -8,6 +8,7 @@
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "relight/light/environment.h"
 
 #include <errno.h>
 #include <math.h>
@@ -49,7 +50,7 @@ void relume_ies_destroy(relume_ies **ies)
 
 // ---------------------------------------------------------------- numbers
 
-static relume_status take(struct reader *r, double *out, const char *what)
+static relume_status take_number(struct reader *r, double *out, const char *what)
 {
     char *end;
     r->at += strspn(r->at, " \t\r\n\f\v,");
@@ -67,7 +68,7 @@ static relume_status take(struct reader *r, double *out, const char *what)
 static relume_status take_count(struct reader *r, int *out, int least, int most, const char *what)
 {
     double n;
-    const relume_status status = take(r, &n, what);
+    const relume_status status = take_number(r, &n, what);
     if (status)
         return status;
     if (n != floor(n) || n < least || n > most)
@@ -82,7 +83,7 @@ static relume_status skip(struct reader *r, int count, const char *what)
     relume_status status = RELUME_OK;
     double unused;
     for (int i = 0; !status && i < count; i++)
-        status = take(r, &unused, what);
+        status = take_number(r, &unused, what);
     return status;
 }
 
@@ -90,7 +91,7 @@ static relume_status take_angles(struct reader *r, double *out, int count, doubl
                                  const char *what)
 {
     for (int i = 0; i < count; i++) {
-        const relume_status status = take(r, &out[i], what);
+        const relume_status status = take_number(r, &out[i], what);
         if (status)
             return status;
         if (out[i] < 0.0 || out[i] > most || (i && out[i] <= out[i - 1]))
@@ -164,7 +165,7 @@ static relume_status take_header(struct reader *r, relume_ies *ies, double *fact
     if (!status)
         status = skip(r, 1, "lumens per lamp");
     if (!status)
-        status = take(r, factor, "candela multiplier");
+        status = take_number(r, factor, "candela multiplier");
     if (!status)
         status = take_count(r, &ies->verticals, 1, MOST_ANGLES, "number of vertical angles");
     if (!status)
@@ -174,7 +175,7 @@ static relume_status take_header(struct reader *r, relume_ies *ies, double *fact
     if (!status)
         status = skip(r, 4, "unit and size of the lamp");
     if (!status)
-        status = take(r, &ballast, "ballast factor");
+        status = take_number(r, &ballast, "ballast factor");
     if (!status)
         status = skip(r, 2, "ballast-lamp factor and watts");
     *factor *= ballast;
@@ -227,7 +228,7 @@ static relume_status take_candela(struct reader *r, relume_ies *ies, double fact
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
         double candela;
-        const relume_status status = take(r, &candela, "candela values");
+        const relume_status status = take_number(r, &candela, "candela values");
         if (status)
             return status;
         if (candela < 0.0 || candela > 1e30)
@@ -249,7 +250,7 @@ static relume_status check_end(struct reader *r)
 {
     double more;
     struct reader quiet = {r->at, r->name, NULL};
-    if (take(&quiet, &more, ""))
+    if (take_number(&quiet, &more, ""))
         return RELUME_OK;
     return log_fail(r->log, RELUME_EFORMAT,
                     "%s: holds more numbers than its counts promise; expected the end of the file",

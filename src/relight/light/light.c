@@ -5,6 +5,7 @@
 #include "core/math/bilinear.h"
 #include "core/math/scalar.h"
 #include "core/math/vec.h"
+#include "relight/light/environment.h"
 
 static const char *const kind_names[] = {
     [RELUME_LIGHT_DIRECTIONAL] = "dir", [RELUME_LIGHT_ENVIRONMENT] = "env",

@@ -10,7 +10,10 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "relight/light/environment.h"
 #include "relight/light/grid.h"
+#include "relight/light/refit.h"
 
 #include <string.h>
 

@@ -3,6 +3,7 @@
 #define RELIGHT_NEAR_LIGHTS_H
 
 #include "image/image/curve.h"
+#include "relight/light/environment.h"
 
 #include <relume/relight/relight.h>
 

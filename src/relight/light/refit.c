@@ -5,12 +5,14 @@
 // it was captured from, in linear light, and `pca` learns that.
 #include <relume/relight/relight.h>
 
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
-#include "core/base/half.h"
+#include "format/coder/coding.h"
 #include "relight/light/grid.h"
+#include "relight/light/refit.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,7 +32,7 @@ struct relume_refit {
     double loss;
 };
 
-struct work {
+struct refitting {
     const struct relume_codes *from;
     const struct relume_coder_info *info;
     struct relume_refit_params params;
@@ -73,8 +75,8 @@ double relume_refit_loss(const relume_refit *refit)
 
 // ---------------------------------------------------------------- decoding
 
-static relume_status decode_light(const struct work *w, const struct relume_codes *codes, int light,
-                                  size_t n, float *rgb)
+static relume_status decode_light(const struct refitting *w, const struct relume_codes *codes,
+                                  int light, size_t n, float *rgb)
 {
     const struct relume_light lamp = {.direction = w->info->directions[light], .rgb = {1, 1, 1}};
     const struct relume_relight_params *p =
@@ -84,8 +86,8 @@ static relume_status decode_light(const struct work *w, const struct relume_code
 }
 
 // Linear values of n pixels (code vectors) under all captured lights: out[lights][n][3].
-static relume_status decode(const struct work *w, const struct relume_codes *codes, size_t first,
-                            size_t step, size_t n, float *out)
+static relume_status decode(const struct refitting *w, const struct relume_codes *codes,
+                            size_t first, size_t step, size_t n, float *out)
 {
     struct relume_codes_part part;
     relume_status status = relume_codes_pick(&part, codes, first, step, n);
@@ -113,7 +115,7 @@ static relume_status as_pixels(struct relume_codes *out, uint16_t **index, const
 
 // ---------------------------------------------------------------- learning
 
-static struct relume_coder_params coder_params(const struct work *w,
+static struct relume_coder_params coder_params(const struct refitting *w,
                                                const struct relume_samples *samples)
 {
     const int want = w->params.coefficients ? w->params.coefficients : 2 * w->info->coefficients;
@@ -130,7 +132,7 @@ static struct relume_coder_params coder_params(const struct work *w,
     return p;
 }
 
-static relume_status learn(relume_refit *refit, const struct work *w,
+static relume_status learn(relume_refit *refit, const struct refitting *w,
                            const struct relume_samples *samples)
 {
     const struct relume_coder_params p = coder_params(w, samples);
@@ -140,7 +142,7 @@ static relume_status learn(relume_refit *refit, const struct work *w,
     return status ? status : relume_coder_append_mean(refit->learned);
 }
 
-static relume_status create_planes(relume_refit *refit, const struct work *w)
+static relume_status create_planes(relume_refit *refit, const struct refitting *w)
 {
     const size_t planes = (size_t)refit->codes.planes;
     refit->plane = mem_zeroed(planes, sizeof *refit->plane);
@@ -159,7 +161,7 @@ static relume_status create_planes(relume_refit *refit, const struct work *w)
     return RELUME_OK;
 }
 
-static relume_status create_book(relume_refit *refit, const struct work *w)
+static relume_status create_book(relume_refit *refit, const struct refitting *w)
 {
     refit->vectors = mem_array(w->pixels, (size_t)refit->codes.planes * sizeof(float));
     refit->book[0] = refit->vectors;
@@ -167,7 +169,7 @@ static relume_status create_book(relume_refit *refit, const struct work *w)
     return refit->vectors ? RELUME_OK : RELUME_ENOMEM;
 }
 
-static relume_status create_codes(relume_refit *refit, const struct work *w, bool book)
+static relume_status create_codes(relume_refit *refit, const struct refitting *w, bool book)
 {
     const struct relume_codes *from = w->from;
     refit->codes = (struct relume_codes){
@@ -199,7 +201,7 @@ static void store(relume_refit *refit, const float *planes, size_t first, size_t
 }
 
 // What is black under every light stays so: its mean does not count either.
-static void keep_black(const relume_refit *refit, const struct work *w, const float *samples,
+static void keep_black(const relume_refit *refit, const struct refitting *w, const float *samples,
                        float *planes, size_t n)
 {
     static const float BLACK = 1e-5f;  // codes of 0 sum to 0 but for rounding
@@ -215,14 +217,14 @@ static void keep_black(const relume_refit *refit, const struct work *w, const fl
 // Bands of pixels (or of a book's vectors), each by one worker.
 struct bands {
     relume_refit *refit;
-    const struct work *work;
+    const struct refitting *work;
     const struct relume_codes *codes;
     _Atomic int status;  // of any that failed
 };
 
 static relume_status encode_band(const struct bands *b, size_t first, size_t n)
 {
-    const struct work *w = b->work;
+    const struct refitting *w = b->work;
     float *samples = mem_array(n * (size_t)w->info->lights, 3 * sizeof *samples);
     float *planes = mem_array(n, (size_t)b->refit->codes.planes * sizeof *planes);
     relume_status status = samples && planes ? RELUME_OK : RELUME_ENOMEM;
@@ -251,10 +253,10 @@ static void encode_item(void *context, size_t item, int worker)
 }
 
 // `codes` being pixels or a book's vectors.
-static relume_status encode(relume_refit *refit, const struct work *w,
+static relume_status encode(relume_refit *refit, const struct refitting *w,
                             const struct relume_codes *codes)
 {
-    struct work alone = *w;
+    struct refitting alone = *w;
     struct bands bands = {refit, &alone, codes, RELUME_OK};
     alone.params.threads = 1;
     thread_for(w->params.threads, (w->pixels + BAND - 1) / BAND, encode_item, &bands);
@@ -262,7 +264,7 @@ static relume_status encode(relume_refit *refit, const struct work *w,
 }
 
 // Against the samples that were learned from: out of pixels that the book or the planes show.
-static relume_status measure(relume_refit *refit, const struct work *w,
+static relume_status measure(relume_refit *refit, const struct refitting *w,
                              const struct relume_codes *shown, const struct relume_samples *samples,
                              size_t step)
 {
@@ -281,7 +283,7 @@ static relume_status measure(relume_refit *refit, const struct work *w,
     return status;
 }
 
-static relume_status refit_codes(relume_refit *refit, struct work *w,
+static relume_status refit_codes(relume_refit *refit, struct refitting *w,
                                  const struct relume_codes *codes, bool book)
 {
     const size_t step = (w->pixels + SAMPLES - 1) / SAMPLES;
@@ -330,7 +332,7 @@ const relume_weight_grid *refit_grid(const relume_refit *refit)
 relume_status relume_refit_create(relume_refit **out, const struct relume_codes *codes,
                                   const struct relume_refit_params *params)
 {
-    struct work w = {
+    struct refitting w = {
         .from = codes,
         .info = relume_coder_info(codes->coder),
         .params = PARAMS_WORK(relume_refit_params, params),

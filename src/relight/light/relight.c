@@ -9,14 +9,16 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
-#include "image/image/curve.h"
 #include "core/kernel/kernels.h"
 #include "core/math/luminance.h"
 #include "core/math/vec.h"
-#include "relight/light/books.h"
+#include "format/coder/coding.h"
+#include "image/image/curve.h"
 #include "image/image/rgba8.h"
+#include "relight/light/books.h"
 #include "relight/light/grid.h"
 #include "relight/light/near_lights.h"
+#include "relight/light/refit.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "relight/light/environment.h"
 #include "relight/light/light.h"
 #include "relight/light/spec.h"
 

@@ -7,6 +7,8 @@
 #include "relight/light/triangles.h"
 
 #include "core/base/memory.h"
+#include "format/coder/coding.h"
+#include "relight/light/refit.h"
 
 #include <string.h>
 

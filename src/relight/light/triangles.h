@@ -3,6 +3,8 @@
 #define RELIGHT_TRIANGLES_H
 
 #include "core/math/vec.h"
+#include "format/coder/coding.h"
+#include "relight/light/refit.h"
 
 #include <relume/relight/relight.h>
 

@@ -13,6 +13,7 @@
 #include "core/base/thread.h"
 #include "core/math/luminance.h"
 #include "core/math/vec.h"
+#include "relight/normals/enhance.h"
 
 #include <string.h>
 

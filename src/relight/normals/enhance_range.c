@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/math/luminance.h"
 #include "core/math/sort.h"
+#include "relight/normals/enhance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,6 +2,7 @@
 #include "relight/shadow/shadows.h"
 
 #include "core/base/memory.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
 

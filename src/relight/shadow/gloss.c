@@ -2,6 +2,7 @@
 #include "relight/shadow/gloss.h"
 
 #include "core/base/thread.h"
+#include "format/pack/views.h"
 
 #include <math.h>
 

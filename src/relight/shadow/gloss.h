@@ -10,7 +10,6 @@
 #include <relume/format/coder.h>
 #include <relume/image.h>
 #include <relume/light.h>
-#include <relume/relight/shadow.h>
 
 // What pixel[RELUME_GLOSS_CHANNELS] shows under a light, its share left aside: at most 1, as
 // photographs do.

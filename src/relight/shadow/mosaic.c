@@ -18,7 +18,7 @@ static int side_of(int whole)
 }
 
 // Pieces lie in the middle of equal parts of the whole.
-static void place(int *at, int n, int whole)
+static void place_piece(int *at, int n, int whole)
 {
     for (int i = 0; i < n; i++)
         at[i] =
@@ -106,8 +106,8 @@ relume_status mosaic_open(struct mosaic *m, const relume_capture *capture,
         .intensities = (const float(*)[3])bright};
     relume_status status = bright && m->x && m->y && m->pictures ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
-        place(m->x, m->columns, width);
-        place(m->y, m->rows, height);
+        place_piece(m->x, m->columns, width);
+        place_piece(m->y, m->rows, height);
         status = take_all(m, capture, bright, manifest.transfer, log);
     }
     if (!status) {

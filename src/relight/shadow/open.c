@@ -1,8 +1,7 @@
 // open.c - the shadows or highlights that a file keeps for a view
 #include "core/base/log.h"
 #include "format/pack/reader.h"
-
-#include <relume/relight/shadow.h>
+#include "relight/shadow/moving.h"
 
 static relume_status open_shadow(relume_shadows **out, relume_pack *pack, int view)
 {

@@ -5,6 +5,10 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/luminance.h"
+#include "format/coder/coding.h"
+#include "format/pack/views.h"
+#include "relight/light/environment.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
 #include <string.h>

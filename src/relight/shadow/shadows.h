@@ -2,9 +2,8 @@
 #ifndef SHADOW_SHADOWS_H
 #define SHADOW_SHADOWS_H
 
+#include "relight/shadow/moving.h"
 #include "relight/shadow/stage.h"
-
-#include <relume/relight/shadow.h>
 
 struct relume_shadows {
     struct stage stage;

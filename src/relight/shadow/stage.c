@@ -6,9 +6,9 @@
 #include "relight/shadow/stage.h"
 
 #include "core/base/memory.h"
+#include "relight/shadow/moving.h"
 
 #include <math.h>
-#include <relume/relight/shadow.h>
 #include <string.h>
 
 // In pixels: how far rays go at once, how far from the surface they start and are behind it before

@@ -3,6 +3,7 @@
 // With m the height of a point above the st plane in units of the cameras' height, the camera at c
 // sees it in (s, t), and the camera at c' in (s, t) + m / (1 - m) (c - c').
 #include "relight/view/slab.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 

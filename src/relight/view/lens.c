@@ -4,6 +4,7 @@
 // 1984). The points lie on Vogel's spiral (1979), as evenly as so many can; how many follows from
 // the largest blur.
 #include "core/math/vec.h"
+#include "relight/view/slab_set.h"
 
 #include <relume/relight/slab_set.h>
 

@@ -11,7 +11,9 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "core/math/bilinear.h"
+#include "image/geometry/geometry.h"
 #include "image/image/footprint.h"
+#include "relight/view/view.h"
 #include "relight/view/panorama.h"
 
 #include <string.h>

@@ -8,6 +8,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/sort.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #define VIEW_SLAB_H
 
 #include "image/image/footprint.h"
+#include "relight/view/view.h"
 
 #include <relume/relight/view.h>
 

@@ -9,6 +9,7 @@
 // hidden nor a texel beyond a silhouette has a say.
 #include "core/math/bilinear.h"
 #include "relight/view/slab.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <string.h>

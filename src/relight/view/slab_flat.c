@@ -2,6 +2,7 @@
 #include "relight/view/slab.h"
 
 #include "core/math/bilinear.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 

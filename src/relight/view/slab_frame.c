@@ -9,6 +9,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/bilinear.h"
+#include "relight/view/view.h"
 
 // One factor of a ray's weights: up to two camera lines times up to two texels of the view.
 struct taps {

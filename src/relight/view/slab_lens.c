@@ -10,6 +10,7 @@
 #include "relight/view/slab.h"
 
 #include "core/base/memory.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 

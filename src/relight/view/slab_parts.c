@@ -6,6 +6,7 @@
 #include "relight/view/slab.h"
 
 #include "core/base/memory.h"
+#include "relight/view/view.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 
 #include "core/base/thread.h"
 #include "core/math/vec.h"
+#include "relight/view/view.h"
 
 static struct slab_ray ray_from(const struct slab_frame *f, double s, double t)
 {

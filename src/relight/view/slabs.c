@@ -3,6 +3,9 @@
 
 #include "core/base/memory.h"
 #include "core/math/scalar.h"
+#include "image/geometry/geometry.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 // Of the extent of the camera grid, and of the window's: where a slab's word begins to fade.
 static const double fade_uv = 0.25;

@@ -3,7 +3,9 @@
 #define VIEW_SLABS_H
 
 #include "core/math/vec.h"
+#include "image/geometry/geometry.h"
 #include "relight/view/slab.h"
+#include "relight/view/view.h"
 
 #include <relume/relight/slab_set.h>
 

@@ -8,6 +8,9 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
+#include "image/geometry/geometry.h"
+#include "relight/view/slab_set.h"
+#include "relight/view/view.h"
 
 #include <string.h>
 

@@ -3,6 +3,7 @@
 #include <relume/relight/view.h>
 
 #include "core/math/vec.h"
+#include "relight/view/view.h"
 
 // The ray of a pixel centre: where it starts and its unit direction.
 static void pixel_ray(const struct relume_geometry *g, const double uv[2], int width, int height,

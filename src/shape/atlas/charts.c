@@ -282,8 +282,9 @@ static double find_scale(const struct packing *p)
     return least;
 }
 
-static void place(struct atlas_corner (*triangle)[3], size_t n, const struct charts *charts,
-                  const struct packing *p, const size_t *where, double scale)
+static void place_triangles(struct atlas_corner (*triangle)[3], size_t n,
+                            const struct charts *charts, const struct packing *p,
+                            const size_t *where, double scale)
 {
     for (size_t i = 0; i < n; i++) {
         const struct chart *c = &p->chart[where[charts->of[i]]];
@@ -314,7 +315,7 @@ relume_status charts_place(const struct charts *charts, struct atlas_corner (*tr
             where[chart[i].number] = i;
         const double scale = find_scale(&p);
         if (scale > 0.0)
-            place(triangle, n, charts, &p, where, scale);
+            place_triangles(triangle, n, charts, &p, where, scale);
         else
             status = log_fail(log, RELUME_EUNFIT,
                               "the atlas of %d x %d texels is too small for %zu charts; make it "

@@ -17,13 +17,6 @@ void relume_billboards_free(struct relume_billboards *cloud)
     *cloud = (struct relume_billboards){.count = 0};
 }
 
-relume_status relume_billboards_method_parse(enum relume_billboards_method *out, const char *name)
-{
-    const bool greedy = !strcmp(name, "greedy");
-    *out = greedy ? RELUME_BILLBOARDS_GREEDY : RELUME_BILLBOARDS_CLUSTERS;
-    return greedy || !strcmp(name, "clusters") ? RELUME_OK : RELUME_EINVAL;
-}
-
 relume_status partition_create(struct partition *out, const struct soup *s)
 {
     *out = (struct partition){.next = mem_array(s->count, sizeof *out->next)};
@@ -67,7 +60,7 @@ static relume_status check(const struct relume_billboards_params *p)
 // ---------------------------------------------------------------- the cloud
 
 // What is made on the way.
-struct work {
+struct billboards_build {
     const struct relume_billboards_params *p;
     struct soup soup;
     struct partition partition;
@@ -76,7 +69,7 @@ struct work {
     double error;  // a length; infinite: none is asked for
 };
 
-static relume_status find_planes(struct work *w)
+static relume_status find_planes(struct billboards_build *w)
 {
     const struct relume_billboards_params *p = w->p;
     // what is asked for may be less than positions of floats hold
@@ -89,7 +82,7 @@ static relume_status find_planes(struct work *w)
                : cluster_planes(&w->partition, &w->soup, w->error, p);
 }
 
-static relume_status lay(struct relume_billboards *out, struct work *w)
+static relume_status lay(struct relume_billboards *out, struct billboards_build *w)
 {
     const struct partition *p = &w->partition;
     vec3 *scratch = mem_array(6 * w->soup.count + 4, sizeof *scratch);
@@ -108,7 +101,7 @@ static relume_status lay(struct relume_billboards *out, struct work *w)
 }
 
 // By the error that was asked for, else by what came of it; no finer than pictures need be.
-static double texel_side(const struct relume_billboards *cloud, const struct work *w)
+static double texel_side(const struct relume_billboards *cloud, const struct billboards_build *w)
 {
     const double longest = w->soup.longest, FINEST = 1.0 / 512.0;
     if (w->p->texel > 0.0)
@@ -116,7 +109,7 @@ static double texel_side(const struct relume_billboards *cloud, const struct wor
     return isfinite(w->error) ? 0.5 * w->error : fmax(0.5 * (double)cloud->error, FINEST * longest);
 }
 
-static relume_status size(struct relume_billboards *out, struct work *w)
+static relume_status size(struct relume_billboards *out, struct billboards_build *w)
 {
     size_t largest = 0;
     out->side = (float)texel_side(out, w);
@@ -137,7 +130,7 @@ static relume_status size(struct relume_billboards *out, struct work *w)
     return out->texel && w->shown ? RELUME_OK : RELUME_ENOMEM;
 }
 
-static relume_status fill(struct relume_billboards *out, const struct work *w,
+static relume_status fill(struct relume_billboards *out, const struct billboards_build *w,
                           size_t triangle_count)
 {
     const struct filling f = {
@@ -163,7 +156,7 @@ relume_status relume_billboards_create(struct relume_billboards *out,
                                        const struct relume_billboards_params *params)
 {
     const struct relume_billboards_params p = defaults(params);
-    struct work w = {.p = &p};
+    struct billboards_build w = {.p = &p};
     *out = (struct relume_billboards){.count = 0};
     relume_status status = check(&p);
     if (!status && mesh->triangle_count > MOST_TRIANGLES)

@@ -43,7 +43,7 @@ struct pair {
     uint32_t a, b, version_a, version_b;
 };
 
-struct work {
+struct clustering {
     const struct soup *s;
     struct cluster *cluster;
     struct partition *out;
@@ -61,7 +61,7 @@ static vec3 point_at(const struct soup *s, uint32_t point)
     return s->corner[point / 3][point % 3];
 }
 
-static uint32_t root(struct work *w, uint32_t c)
+static uint32_t root(struct clustering *w, uint32_t c)
 {
     while (w->cluster[c].into != c) {
         w->cluster[c].into = w->cluster[w->cluster[c].into].into;
@@ -79,7 +79,7 @@ static bool dearer(const struct pair *a, const struct pair *b)
     return a->a != b->a ? a->a > b->a : a->b > b->b;
 }
 
-static bool push(struct work *w, struct pair p)
+static bool push(struct clustering *w, struct pair p)
 {
     if (!mem_grow(&w->heap, w->pairs, sizeof *w->heap))
         return false;
@@ -90,7 +90,7 @@ static bool push(struct work *w, struct pair p)
     return true;
 }
 
-static struct pair pop(struct work *w)
+static struct pair pop(struct clustering *w)
 {
     const struct pair top = w->heap[0], last = w->heap[--w->pairs];
     size_t i = 0;
@@ -136,14 +136,14 @@ static double rectangle_area(const vec3 *p, int n, const struct plane *plane)
 }
 
 // Whether mean normals alone forbid it: they lie within the cone of the triangles' normals.
-static bool turned_off(const struct work *w, const struct cluster *c, vec3 normal)
+static bool turned_off(const struct clustering *w, const struct cluster *c, vec3 normal)
 {
     const double length = vec3_length(c->moments.normal);
     return vec3_dot(c->moments.normal, normal) < (w->least_cosine - 1e-9) * length;
 }
 
 // Infinite: never.
-static double cost_of(const struct work *w, const struct cluster *a, const struct cluster *b)
+static double cost_of(const struct clustering *w, const struct cluster *a, const struct cluster *b)
 {
     const struct moments sum = moments_sum(&a->moments, &b->moments);
     const struct plane plane = moments_plane(&sum);
@@ -168,7 +168,7 @@ static double cost_of(const struct work *w, const struct cluster *a, const struc
     return fmax(waste, 0.0) + step * w->waste;
 }
 
-static bool weigh(struct work *w, uint32_t a, uint32_t b)
+static bool weigh(struct clustering *w, uint32_t a, uint32_t b)
 {
     const struct cluster *const ca = &w->cluster[a], *const cb = &w->cluster[b];
     const double cost = cost_of(w, ca, cb);
@@ -176,7 +176,7 @@ static bool weigh(struct work *w, uint32_t a, uint32_t b)
 }
 
 // By all triangles: within the bounds?
-static bool fits(const struct work *w, const struct cluster *a, const struct cluster *b)
+static bool fits(const struct clustering *w, const struct cluster *a, const struct cluster *b)
 {
     const struct moments sum = moments_sum(&a->moments, &b->moments);
     const vec3 normal = moments_plane(&sum).normal;
@@ -245,7 +245,8 @@ static int by_distance(const void *a, const void *b)
 }
 
 // How far the ends of a cluster come to a place.
-static double square_to(const struct work *w, const struct cluster *c, const struct cluster *to)
+static double square_to(const struct clustering *w, const struct cluster *c,
+                        const struct cluster *to)
 {
     double least = INFINITY;
     const vec3 middle = middle_of(to);
@@ -257,7 +258,7 @@ static double square_to(const struct work *w, const struct cluster *c, const str
 }
 
 // Neighbours of both, the nearest of them where there are too many.
-static bool join_neighbours(struct work *w, uint32_t a, uint32_t b)
+static bool join_neighbours(struct clustering *w, uint32_t a, uint32_t b)
 {
     struct cluster *const pair[2] = {&w->cluster[a], &w->cluster[b]};
     struct distant found[2 * MOST_NEIGHBOURS];
@@ -293,7 +294,7 @@ static bool join_neighbours(struct work *w, uint32_t a, uint32_t b)
     return true;
 }
 
-static bool merge(struct work *w, uint32_t a, uint32_t b)
+static bool merge(struct clustering *w, uint32_t a, uint32_t b)
 {
     struct cluster *const to = &w->cluster[a], *const from = &w->cluster[b];
     farthest(to, w->s, from);
@@ -310,7 +311,8 @@ static bool merge(struct work *w, uint32_t a, uint32_t b)
     return good;
 }
 
-static relume_status run(struct work *w, size_t wanted, const struct relume_log *log)
+static relume_status merge_clusters(struct clustering *w, size_t wanted,
+                                    const struct relume_log *log)
 {
     enum { TOLD_EVERY = 1024 };
     bool good = true;
@@ -329,7 +331,7 @@ static relume_status run(struct work *w, size_t wanted, const struct relume_log 
 
 // ---------------------------------------------------------------- begin and end
 
-static void begin_cluster(struct work *w, uint32_t i)
+static void begin_cluster(struct clustering *w, uint32_t i)
 {
     w->cluster[i] = (struct cluster){.moments = moments_of(w->s, i),
                                      .point = {3 * i, 3 * i + 1, 3 * i + 2},
@@ -342,7 +344,7 @@ static void begin_cluster(struct work *w, uint32_t i)
 
 // Neighbours at the beginning, and what they cost. A pair is weighed once, where both name each
 // other; by the first that names it.
-static bool begin(struct work *w)
+static bool begin(struct clustering *w)
 {
     const size_t n = w->s->count, most = (size_t)w->neighbours;
     vec3 *middle = mem_array(n, sizeof *middle);
@@ -371,7 +373,7 @@ static bool begin(struct work *w)
     return good;
 }
 
-static bool end(struct work *w)
+static bool end(struct clustering *w)
 {
     size_t count = 0;
     w->out->plane = mem_array(w->left, sizeof *w->out->plane);
@@ -394,19 +396,19 @@ relume_status cluster_planes(struct partition *out, const struct soup *s, double
 {
     // The finest error: coarse ones come in three doublings, as the thesis's levels of detail do.
     const double finest = params->count ? s->longest / 4096.0 : error / 8.0;
-    struct work w = {.s = s,
-                     .out = out,
-                     .left = s->count,
-                     .error = error,
-                     .finest = finest,
-                     .least_cosine = cos(params->angle_deg * M_PI / 180.0),
-                     .waste = params->waste,
-                     .neighbours = params->neighbours};
+    struct clustering w = {.s = s,
+                           .out = out,
+                           .left = s->count,
+                           .error = error,
+                           .finest = finest,
+                           .least_cosine = cos(params->angle_deg * M_PI / 180.0),
+                           .waste = params->waste,
+                           .neighbours = params->neighbours};
     w.cluster = mem_zeroed(s->count, sizeof *w.cluster);
     w.seen = mem_zeroed(s->count, sizeof *w.seen);
     relume_status status = w.cluster && w.seen && begin(&w) ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = run(&w, (size_t)params->count, params->log);
+        status = merge_clusters(&w, (size_t)params->count, params->log);
     if (!status && !end(&w))
         status = RELUME_ENOMEM;
     for (size_t i = 0; w.cluster && i < s->count; i++)

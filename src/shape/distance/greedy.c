@@ -17,7 +17,7 @@
 
 enum { VOTED_DIRECTIONS = 512 };
 
-struct work {
+struct plane_votes {
     const struct soup *s;
     struct partition *out;
     double error, step, low;
@@ -44,7 +44,7 @@ static void spread(vec3 *direction)
 }
 
 // The offsets of planes that a triangle may go to.
-static struct range valid(const struct work *w, size_t triangle, vec3 direction)
+static struct range valid(const struct plane_votes *w, size_t triangle, vec3 direction)
 {
     struct range r = range_none;
     for (int k = 0; k < 3; k++)
@@ -52,7 +52,7 @@ static struct range valid(const struct work *w, size_t triangle, vec3 direction)
     return (struct range){r.high - w->error, r.low + w->error};
 }
 
-static void vote(struct work *w, size_t triangle, double sign)
+static void vote(struct plane_votes *w, size_t triangle, double sign)
 {
     for (size_t d = 0; d < VOTED_DIRECTIONS; d++) {
         const struct range r = valid(w, triangle, w->direction[d]);
@@ -66,7 +66,7 @@ static void vote(struct work *w, size_t triangle, double sign)
 }
 
 // The area that may go to a plane.
-static double reach(const struct work *w, const struct plane *p)
+static double reach(const struct plane_votes *w, const struct plane *p)
 {
     double area = 0.0;
     for (size_t i = 0; i < w->s->count; i++) {
@@ -78,7 +78,7 @@ static double reach(const struct work *w, const struct plane *p)
 }
 
 // In the middle of what goes to `p`, by least squares.
-static struct plane fitted(const struct work *w, const struct plane *p)
+static struct plane fitted(const struct plane_votes *w, const struct plane *p)
 {
     struct moments sum = {0};
     for (size_t i = 0; i < w->s->count; i++) {
@@ -91,7 +91,7 @@ static struct plane fitted(const struct work *w, const struct plane *p)
     return sum.area > 0.0 ? moments_plane(&sum) : *p;
 }
 
-static struct plane choose(struct work *w)
+static struct plane choose(struct plane_votes *w)
 {
     size_t best = 0;
     for (size_t i = 1; i < VOTED_DIRECTIONS * w->offsets; i++)
@@ -112,7 +112,7 @@ static struct plane choose(struct work *w)
 }
 
 // Its triangles no longer vote. The plane's own triangle may lie off by rounding alone.
-static void take(struct work *w, struct plane p)
+static void take_plane(struct plane_votes *w, struct plane p)
 {
     const double rounding = 1e-9 * w->s->longest;
     uint32_t head = NOBODY;
@@ -147,7 +147,7 @@ static int by_area(const void *a, const void *b)
     return (p->triangle > q->triangle) - (p->triangle < q->triangle);
 }
 
-static bool sort(struct work *w)
+static bool sort(struct plane_votes *w)
 {
     struct sized *sized = mem_array(w->s->count, sizeof *sized);
     for (size_t i = 0; sized && i < w->s->count; i++)
@@ -164,7 +164,7 @@ relume_status greedy_planes(struct partition *out, const struct soup *s, double 
                             const struct relume_log *log)
 {
     enum { MOST_OFFSETS = 8192 };
-    struct work w = {.s = s, .out = out, .error = error, .left = s->count};
+    struct plane_votes w = {.s = s, .out = out, .error = error, .left = s->count};
     const double half = 0.5 * sqrt(3.0) * s->longest;  // of the ball about the box
     w.step = fmax(0.5 * error, 2.0 * half / MOST_OFFSETS);
     w.low = -half;
@@ -180,7 +180,7 @@ relume_status greedy_planes(struct partition *out, const struct soup *s, double 
     for (size_t i = 0; !status && i < s->count; i++)
         vote(&w, i, 1.0);
     while (!status && w.left) {
-        take(&w, choose(&w));
+        take_plane(&w, choose(&w));
         if (!log_progress(log, "planes", 1.0 - (double)w.left / (double)s->count))
             status = RELUME_ECANCEL;
     }

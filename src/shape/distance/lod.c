@@ -1,7 +1,8 @@
 // lod.c - how much of a surface is needed at a distance (Meseth 2008, chapter 6: errors as they are
 // seen)
+#include "shape/distance/lod.h"
+
 #include <math.h>
-#include <relume/shape/billboards.h>
 
 double relume_lod_pixels(double error, double distance, double view_rad, int height)
 {

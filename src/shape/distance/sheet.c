@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 
 #include "core/math/scalar.h"
+#include "shape/distance/lod.h"
 
 #include <math.h>
 #include <relume/shape/billboards.h>

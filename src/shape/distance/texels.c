@@ -2,6 +2,7 @@
 #include "shape/distance/texels.h"
 
 #include "core/math/scalar.h"
+#include "shape/distance/lod.h"
 
 #include <stdlib.h>
 

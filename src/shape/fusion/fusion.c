@@ -139,9 +139,9 @@ static relume_status colour(struct relume_mesh *mesh, struct relume_fusion_repor
     return status;
 }
 
-static relume_status work(struct relume_mesh *out, struct relume_fusion_report *report,
-                          relume_pack *pack, struct witness *witness,
-                          const struct relume_fusion_params *p)
+static relume_status fuse_views(struct relume_mesh *out, struct relume_fusion_report *report,
+                                relume_pack *pack, struct witness *witness,
+                                const struct relume_fusion_params *p)
 {
     const double start = now_s();
     relume_status status = open_witnesses(witness, pack, p);
@@ -171,7 +171,7 @@ relume_status relume_fusion(struct relume_mesh *out, struct relume_fusion_report
                         "a texture of %d texels a side; expected 1 to %d, colours and a report",
                         p.texture, MOST_SIDE);
     struct witness *witness = mem_zeroed((size_t)info->views, sizeof *witness);
-    relume_status status = witness ? work(out, &own, pack, witness, &p) : RELUME_ENOMEM;
+    relume_status status = witness ? fuse_views(out, &own, pack, witness, &p) : RELUME_ENOMEM;
     for (int i = 0; witness && i < info->views; i++)
         witness_destroy(&witness[i]);
     mem_free(witness);

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/bilinear.h"
+#include "image/geometry/geometry.h"
 
 static float depth_at(const struct witness *s, int x, int y)
 {

@@ -94,7 +94,7 @@ static void take_triangles(struct relume_mesh *out, const struct mesh *m)
 }
 
 // All that is in the file goes over; what has been copied is freed first.
-static relume_status take(struct relume_mesh *out, struct mesh_file *f)
+static relume_status take_mesh(struct relume_mesh *out, struct mesh_file *f)
 {
     struct mesh *m = &f->mesh;
     const size_t vertices = m->vertex_count, triangles = m->triangle_count;
@@ -134,7 +134,7 @@ relume_status relume_mesh_read(struct relume_mesh *out, const char *path,
     if (!status)
         status = weld(&file);
     if (!status)
-        status = take(out, &file);
+        status = take_mesh(out, &file);
     mesh_file_free(&file);
     if (status)
         relume_mesh_free(out);

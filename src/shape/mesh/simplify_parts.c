@@ -60,7 +60,7 @@ struct parts {
 };
 
 // A piece while it is made and run.
-struct work {
+struct open_piece {
     struct parts *parts;
     int cell;
     struct piece piece;
@@ -72,7 +72,7 @@ struct work {
 
 // ---------------------------------------------------------------- memory
 
-static void *take(struct parts *p, size_t count)
+static void *take_memory(struct parts *p, size_t count)
 {
     void *at = p->memory + p->taken;
     p->taken += (count * sizeof(uint32_t) + 4095) / 4096 * 4096;
@@ -89,17 +89,17 @@ static relume_status make_room(struct parts *p)
         return log_fail(p->log, RELUME_EIO,
                         "no room for %zu MB of a mesh that is simplified in %s; %s", p->bytes >> 20,
                         scratch_folder(), strerror(errno));
-    p->triangle = take(p, 3 * t);
-    p->sample_first = take(p, t);
-    p->now.triangle = take(p, t);
-    p->original.triangle = take(p, t);
-    p->sample_next = take(p, v);
-    p->shown = take(p, 3 * v);
-    p->point = take(p, v);
-    p->owner = take(p, v);
-    p->local = take(p, v);
-    p->marked = take(p, v);
-    p->waits = take(p, v);
+    p->triangle = take_memory(p, 3 * t);
+    p->sample_first = take_memory(p, t);
+    p->now.triangle = take_memory(p, t);
+    p->original.triangle = take_memory(p, t);
+    p->sample_next = take_memory(p, v);
+    p->shown = take_memory(p, 3 * v);
+    p->point = take_memory(p, v);
+    p->owner = take_memory(p, v);
+    p->local = take_memory(p, v);
+    p->marked = take_memory(p, v);
+    p->waits = take_memory(p, v);
     return RELUME_OK;
 }
 
@@ -274,7 +274,7 @@ static relume_status begin_pass(struct parts *p, size_t most, double share)
 
 // ---------------------------------------------------------------- a piece is made
 
-static bool name_vertex(struct work *w, uint32_t vertex)
+static bool name_vertex(struct open_piece *w, uint32_t vertex)
 {
     uint32_t *local = &w->parts->local[vertex];
     if (*local != NOTHING)
@@ -283,12 +283,12 @@ static bool name_vertex(struct work *w, uint32_t vertex)
     return add(&w->vertex, vertex);
 }
 
-static bool name_triangle(struct work *w, const uint32_t t[3])
+static bool name_triangle(struct open_piece *w, const uint32_t t[3])
 {
     return name_vertex(w, t[0]) && name_vertex(w, t[1]) && name_vertex(w, t[2]);
 }
 
-static bool list_own(struct work *w)
+static bool list_own(struct open_piece *w)
 {
     const struct parts *p = w->parts;
     for (size_t i = p->now.first[w->cell]; i < p->now.first[w->cell + 1]; i++) {
@@ -304,7 +304,7 @@ static bool list_own(struct work *w)
     return true;
 }
 
-static void mark_border(struct work *w, uint32_t mark)
+static void mark_border(struct open_piece *w, uint32_t mark)
 {
     struct parts *p = w->parts;
     const struct list *border = &p->border[w->cell];
@@ -320,7 +320,7 @@ static bool is_marked(const struct parts *p, uint32_t vertex)
 }
 
 // Triangles of other pieces at points of this one.
-static bool list_others(struct work *w)
+static bool list_others(struct open_piece *w)
 {
     const struct parts *p = w->parts;
     bool good = true;
@@ -336,7 +336,7 @@ static bool list_others(struct work *w)
 }
 
 // The original as far as new triangles may ask for it.
-static bool list_near(struct work *w)
+static bool list_near(struct open_piece *w)
 {
     const struct parts *p = w->parts;
     const struct simplify *s = &p->run->s;
@@ -362,7 +362,7 @@ static bool list_near(struct work *w)
     return true;
 }
 
-static void copy_vertices(struct work *w)
+static void copy_vertices(struct open_piece *w)
 {
     const struct parts *p = w->parts;
     const struct relume_mesh *m = p->run->s.mesh;
@@ -390,7 +390,7 @@ static void copy_triangles(const struct parts *p, const struct list *from,
             to[i][k] = p->local[triangle[from->item[i]][k]];
 }
 
-static relume_status make_piece(struct work *w)
+static relume_status make_piece(struct open_piece *w)
 {
     const struct parts *p = w->parts;
     const struct relume_mesh *m = p->run->s.mesh;
@@ -428,7 +428,7 @@ static relume_status make_piece(struct work *w)
 
 // ---------------------------------------------------------------- and done
 
-static void keep_triangles(struct work *w, const struct run *r)
+static void keep_triangles(struct open_piece *w, const struct run *r)
 {
     struct parts *p = w->parts;
     const struct connect *c = &r->s.connect;
@@ -461,7 +461,7 @@ static void keep_triangles(struct work *w, const struct run *r)
     }
 }
 
-static relume_status keep_steps(const struct work *w, const struct run *r)
+static relume_status keep_steps(const struct open_piece *w, const struct run *r)
 {
     struct run *all = w->parts->run;
     for (size_t i = 0; i < r->steps; i++) {
@@ -475,7 +475,7 @@ static relume_status keep_steps(const struct work *w, const struct run *r)
     return RELUME_OK;
 }
 
-static void free_work(struct work *w)
+static void free_work(struct open_piece *w)
 {
     relume_mesh_free(&w->piece.mesh);
     mem_free(w->piece.triangle);
@@ -505,7 +505,7 @@ static bool has_work(const struct parts *p, int cell)
 static relume_status run_piece(struct parts *p, int cell, double share)
 {
     struct run *all = p->run;
-    struct work w = {.parts = p, .cell = cell};
+    struct open_piece w = {.parts = p, .cell = cell};
     struct run r = *all;
     relume_status status = make_piece(&w);
     r.piece = &w.piece;

@@ -6,6 +6,7 @@
 // in the texture slides; its colour against that of the new surface there; and, of all around the
 // target together, their normals (simplify_look.c). Guthe 2008, section 10.1: both against the mesh
 // before and, since these are the vertices of the original, against that.
+#include "image/compare/jnd.h"
 #include "shape/mesh/simplify.h"
 
 #include <math.h>

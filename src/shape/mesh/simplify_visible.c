@@ -16,6 +16,7 @@
 
 #include "core/math/lsq.h"
 #include "core/math/sh.h"
+#include "image/compare/jnd.h"
 
 #include <math.h>
 #include <relume/image/jnd.h>

@@ -179,7 +179,7 @@ static void paint(box_owner *owner, int side, const struct box *r)
 }
 
 // Older boxes stay, unless they lie within the new one; what they leave of it becomes dikes again.
-static void place(box_owner *owner, int side, struct box r)
+static void place_box(box_owner *owner, int side, struct box r)
 {
     struct box stack[3 * BLOCK_LEVELS + 2];
     int count = 1, axis = 0;
@@ -250,8 +250,8 @@ static void make_bricks(box_owner *brick, const struct block *b, int z)
                 k = dike_level(q, b->levels);
                 while (q + (1 << k) > top || s.y[k][q] & columns)
                     k--;
-                place(brick, b->side,
-                      (struct box){{(uint8_t)p, (uint8_t)q, 0}, {(uint8_t)l, (uint8_t)k, 0}});
+                place_box(brick, b->side,
+                          (struct box){{(uint8_t)p, (uint8_t)q, 0}, {(uint8_t)l, (uint8_t)k, 0}});
             }
         }
 }
@@ -285,7 +285,7 @@ static void pile_up(struct block *b, const box_owner *bricks, struct box r, int 
             l--;
         r.at[2] = (uint8_t)q;
         r.level[2] = (uint8_t)l;
-        place(b->owner, b->side, r);
+        place_box(b->owner, b->side, r);
     }
 }
 

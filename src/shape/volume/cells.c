@@ -107,7 +107,7 @@ static void cut_cell(struct cut *c, int corners, int middles)
 
 // ---------------------------------------------------------------- rows of cells
 
-struct work {
+struct cell_rows {
     const struct signs *g;
     struct cut table[256];
     struct numbering vertices;
@@ -156,8 +156,8 @@ static int corners_at(const uint64_t low[4], const uint64_t high[4], int bit)
 
 // The pattern of a cell; where faces leave it open, `own` has it made by their middles, the means
 // of four samples.
-static const struct cut *cut_at(const struct work *k, struct cut *own, int corners, int x, int y,
-                                int z)
+static const struct cut *cut_at(const struct cell_rows *k, struct cut *own, int corners, int x,
+                                int y, int z)
 {
     const struct cut *c = &k->table[corners];
     if (!c->open)
@@ -180,7 +180,7 @@ static const struct cut *cut_at(const struct work *k, struct cut *own, int corne
 static void count_layer(void *context, size_t z, int worker)
 {
     (void)worker;
-    struct work *k = context;
+    struct cell_rows *k = context;
     uint64_t low[4], high[4];
     size_t triangles = 0, open = 0, cells = 0;
     for (int y = 0; y + 1 < k->g->size[1]; y++) {
@@ -206,7 +206,7 @@ struct counters {
     uint32_t x[4], y[2], z[2];
 };
 
-static struct counters counters_at(const struct work *k, int y, int z)
+static struct counters counters_at(const struct cell_rows *k, int y, int z)
 {
     const size_t height = (size_t)k->g->size[1], row = (size_t)z * height + (size_t)y;
     const uint32_t *a = k->vertices.first + 3 * row, *b = a + 3, *c = a + 3 * height, *d = c + 3;
@@ -236,7 +236,7 @@ static size_t put_cell(const struct cut *c, struct counters *next, uint32_t (*ou
 static void put_layer(void *context, size_t z, int worker)
 {
     (void)worker;
-    const struct work *k = context;
+    const struct cell_rows *k = context;
     uint64_t low[4], high[4];
     uint32_t(*out)[3] = k->triangle + k->first[z];
     for (int y = 0; y + 1 < k->g->size[1] && k->first[z] < k->first[z + 1]; y++) {
@@ -253,7 +253,7 @@ static void put_layer(void *context, size_t z, int worker)
     }
 }
 
-static relume_status put(struct relume_mesh *out, struct work *k)
+static relume_status put(struct relume_mesh *out, struct cell_rows *k)
 {
     relume_status status = numbering_create(&k->vertices, k->g, NULL);
     if (status)
@@ -284,7 +284,7 @@ static size_t sum_up(size_t *of, size_t layers)
 }
 
 static relume_status mesh_of(struct relume_mesh *out, struct relume_isosurface_report *report,
-                             struct work *k)
+                             struct cell_rows *k)
 {
     const size_t layers = (size_t)k->g->size[2] - 1;
     for (int corners = 0; corners < 256; corners++)
@@ -300,7 +300,7 @@ relume_status cells_mesh(struct relume_mesh *out, struct relume_isosurface_repor
                          const struct signs *g)
 {
     const size_t layers = (size_t)g->size[2];
-    struct work *k = mem_zeroed(1, sizeof *k);
+    struct cell_rows *k = mem_zeroed(1, sizeof *k);
     if (!k)
         return RELUME_ENOMEM;
     k->g = g;

@@ -289,8 +289,8 @@ static relume_status finish(struct relume_mesh *out, struct relume_isosurface_re
     return status;
 }
 
-static relume_status run(struct relume_mesh *out, struct relume_isosurface_report *report,
-                         struct climb *k)
+static relume_status climb_volume(struct relume_mesh *out, struct relume_isosurface_report *report,
+                                  struct climb *k)
 {
     const struct signs *g = k->g;
     if (!signs_pass(g, (size_t)k->blocks[2], climb_layer, k, 0.0, 0.6))
@@ -320,8 +320,9 @@ relume_status climb_mesh(struct relume_mesh *out, struct relume_isosurface_repor
     k.first = mem_array(layers, sizeof *k.first);
     if (k.state)
         memset(k.state, 0xff, blocks * sizeof *k.state);  // EMPTY
-    const relume_status status =
-        k.state && k.layer && k.worker && k.used && k.first ? run(out, report, &k) : RELUME_ENOMEM;
+    const relume_status status = k.state && k.layer && k.worker && k.used && k.first
+                                     ? climb_volume(out, report, &k)
+                                     : RELUME_ENOMEM;
     for (size_t z = 0; k.layer && z < layers; z++) {
         mem_free(k.layer[z].owners);
         mem_free(k.layer[z].triangle);

@@ -3,11 +3,12 @@
 
 #include "core/base/memory.h"
 #include "exchange/formats/sheet.h"
+#include "format/pack/views.h"
+#include "relight/shadow/moving.h"
 #include "site/publish/levels.h"
 
 #include <float.h>
 #include <math.h>
-#include <relume/relight/shadow.h>
 
 _Static_assert(MOVING_NUMBERS == (int)RELUME_SHADOW_CHANNELS &&
                    MOVING_NUMBERS == (int)RELUME_GLOSS_CHANNELS,

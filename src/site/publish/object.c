@@ -159,7 +159,7 @@ static void fill_frames(struct arrays *a, const relume_baked *b)
 // ---------------------------------------------------------------- object.bin
 
 // Room for an array behind the others, or its size alone while there is no memory.
-static void *take(char *memory, size_t *used, size_t count, size_t bytes)
+static void *take_array(char *memory, size_t *used, size_t count, size_t bytes)
 {
     char *at = memory ? memory + *used : NULL;
     *used += (count * bytes + 3) / 4 * 4;
@@ -170,13 +170,13 @@ static size_t lay_out(struct arrays *a, const relume_baked *b, char *memory)
 {
     const size_t texels = (size_t)b->info.width * (size_t)b->info.height;
     size_t used = 0;
-    a->index = take(memory, &used, a->corners, sizeof *a->index);
-    a->value = take(memory, &used, 3 * b->vectors * (size_t)b->kept, sizeof *a->value);
-    a->position = take(memory, &used, a->vertices, sizeof *a->position);
-    a->place = take(memory, &used, a->vertices, sizeof *a->place);
-    a->cluster = take(memory, &used, texels, sizeof *a->cluster);
-    a->weight = take(memory, &used, a->layers * texels, sizeof *a->weight);
-    a->frame = b->info.side > 1 ? take(memory, &used, 2 * texels, sizeof *a->frame) : NULL;
+    a->index = take_array(memory, &used, a->corners, sizeof *a->index);
+    a->value = take_array(memory, &used, 3 * b->vectors * (size_t)b->kept, sizeof *a->value);
+    a->position = take_array(memory, &used, a->vertices, sizeof *a->position);
+    a->place = take_array(memory, &used, a->vertices, sizeof *a->place);
+    a->cluster = take_array(memory, &used, texels, sizeof *a->cluster);
+    a->weight = take_array(memory, &used, a->layers * texels, sizeof *a->weight);
+    a->frame = b->info.side > 1 ? take_array(memory, &used, 2 * texels, sizeof *a->frame) : NULL;
     return used;
 }
 

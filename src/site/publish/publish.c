@@ -23,24 +23,8 @@ enum { POSTER_SIDE = 800 };
 // PSNR in dB below which differences from the original are visible.
 static const double SEEN_DB = 38.0;
 
-relume_status relume_publish_for_parse(enum relume_publish_for *out, const char *name)
-{
-    static const char *const names[] = {"both", "web", "disk"};
-    const int i = name_find(name, names, sizeof names / sizeof *names);
-    *out = (enum relume_publish_for)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
-
-relume_status relume_publish_layers_parse(enum relume_publish_layers *out, const char *name)
-{
-    static const char *const names[] = {"jpeg", "avif", "both"};
-    const int i = name_find(name, names, sizeof names / sizeof *names);
-    *out = (enum relume_publish_layers)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
-}
-
 // All files of a site, and what is known of them.
-struct work {
+struct site_build {
     const struct relume_publish_params *params;
     const char *const *files;
     int count;
@@ -51,7 +35,7 @@ struct work {
     struct relume_publish_report *reports;  // or NULL
 };
 
-static relume_status work_begin(struct work *w)
+static relume_status work_begin(struct site_build *w)
 {
     const size_t n = (size_t)w->count;
     w->stems = mem_zeroed(n + 1, sizeof *w->stems);
@@ -66,7 +50,7 @@ static relume_status work_begin(struct work *w)
     return details_load(&w->metadata, w->params, (const char *const *)w->stems);
 }
 
-static void work_end(struct work *w)
+static void work_end(struct site_build *w)
 {
     for (int i = 0; w->stems && i < w->count; i++)
         mem_free(w->stems[i]);
@@ -143,7 +127,7 @@ static enum relume_publish_advice advise(const struct relume_publish_report *r,
     return wished ? RELUME_PUBLISH_NO_ADVICE : RELUME_PUBLISH_RAISE_QUALITY;
 }
 
-static relume_status publish_file(struct work *w, int i, const struct site *site)
+static relume_status publish_file(struct site_build *w, int i, const struct site *site)
 {
     struct log_place place;
     struct site here = *site;
@@ -218,7 +202,7 @@ relume_status relume_publish_files(const char *path, const char *const *files, i
                                    struct relume_publish_report *reports)
 {
     const struct relume_publish_params p = PARAMS_WORK(relume_publish_params, params);
-    struct work w = {.params = &p, .files = files, .count = count, .reports = reports};
+    struct site_build w = {.params = &p, .files = files, .count = count, .reports = reports};
     outdir *dir = NULL;
     relume_status status = check(files, count, path, &p);
     if (!status)

@@ -3,6 +3,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "site/study/answers.h"
+#include "site/study/statistics.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,6 @@
 // statistics.c - distributions that studies ask for
+#include "site/study/statistics.h"
+
 #include <relume/site/study.h>
 
 #include <math.h>

@@ -3,7 +3,9 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "relight/light/environment.h"
 #include "world/bake/compress.h"
+#include "world/object/drawn_objects.h"
 
 #include <string.h>
 

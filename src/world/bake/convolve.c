@@ -4,13 +4,14 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/sh.h"
+#include "material/surface/texels.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { LIGHTS = 128 };  // of the hemisphere that a texel is asked for
 
-struct work {
+struct convolution {
     struct convolved *c;
     const relume_btf_surface *surface;
     int side;
@@ -18,7 +19,7 @@ struct work {
     double harmonics[LIGHTS][CONVOLVE_COUNT];
 };
 
-static void ask_view(float *to, const struct work *w, int x, int y, vec3 view)
+static void ask_view(float *to, const struct convolution *w, int x, int y, vec3 view)
 {
     float sum[CONVOLVE_COUNT][3] = {{0.0f}};
     const double share = 2.0 * M_PI / LIGHTS;
@@ -37,7 +38,7 @@ static void ask_view(float *to, const struct work *w, int x, int y, vec3 view)
 static void ask_texel(void *context, size_t item, int worker)
 {
     (void)worker;
-    const struct work *w = context;
+    const struct convolution *w = context;
     const int width = w->c->width, views = w->c->views;
     float *to = w->c->value + item * (size_t)views * CONVOLVE_COUNT * 3;
     for (int v = 0; v < views; v++, to += 3 * CONVOLVE_COUNT)
@@ -46,7 +47,7 @@ static void ask_texel(void *context, size_t item, int worker)
 }
 
 // A golden-angle spiral over the hemisphere (Swinbank and Purser 2006).
-static void find_lights(struct work *w)
+static void find_lights(struct convolution *w)
 {
     const double golden = M_PI * (3.0 - sqrt(5.0));
     for (int i = 0; i < LIGHTS; i++) {
@@ -65,7 +66,7 @@ relume_status convolved_create(struct convolved **out, const relume_btf_surface 
     if ((uint64_t)texels * numbers > most / sizeof(float))
         return RELUME_OK;
     struct convolved *c = *out = mem_zeroed(1, sizeof *c);
-    struct work *w = mem_zeroed(1, sizeof *w);
+    struct convolution *w = mem_zeroed(1, sizeof *w);
     if (c) {
         c->width = width, c->height = height, c->views = side * side;
         c->value = mem_array(texels * numbers, sizeof *c->value);

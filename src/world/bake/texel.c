@@ -3,6 +3,8 @@
 
 #include "core/base/memory.h"
 #include "core/math/random.h"
+#include "material/surface/texels.h"
+#include "world/object/drawn_objects.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,6 +4,7 @@
 
 #include "shape/atlas/atlas.h"
 #include "world/bake/convolve.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
 
 #include <relume/world/bake.h>

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "relight/light/environment.h"
 
 #include <math.h>
 

@@ -5,6 +5,8 @@
 
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "world/object/drawn_objects.h"
+#include "world/object/baked_object.h"
 
 #include <string.h>
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 // Positions and triangles from `first` on, counted from 0.
-static relume_status take(struct relume_mesh *out, const struct mesh *from, size_t first)
+static relume_status take_mesh(struct relume_mesh *out, const struct mesh *from, size_t first)
 {
     out->vertex_count = from->vertex_count;
     out->triangle_count = from->triangle_count - first;
@@ -26,7 +26,7 @@ relume_status objects_add_cloud(relume_objects *o, size_t first, double error,
 {
     struct relume_mesh mesh = {0};
     struct relume_billboards *cloud = mem_zeroed(1, sizeof *cloud);
-    relume_status status = cloud ? take(&mesh, &o->mesh, first) : RELUME_ENOMEM;
+    relume_status status = cloud ? take_mesh(&mesh, &o->mesh, first) : RELUME_ENOMEM;
     if (!status)
         status = relume_billboards_create(cloud, &mesh,
                                           relume_billboards_params(.log = log, .error = error));

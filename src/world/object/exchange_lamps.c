@@ -4,6 +4,7 @@
 
 #include "core/math/random.h"
 #include "core/math/scalar.h"
+#include "world/object/drawn_objects.h"
 
 static void add_lamp(struct lamps *lamps, bool let_through, double cosine, const float rgb[3])
 {

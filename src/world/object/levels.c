@@ -12,6 +12,8 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "world/object/levels.h"
+#include "shape/distance/lod.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
 #include "world/object/skin.h"
 

@@ -1,5 +1,7 @@
 // light_samples.c - lights as samples: whatever shines from more than one direction becomes several
 #include "core/base/memory.h"
+#include "relight/light/environment.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
 
 #include <relume/light.h>

@@ -1,5 +1,8 @@
 // lighting.c - all lights as they fall on objects: light samples, and environments on each material
 #include "core/base/memory.h"
+#include "material/model/environment.h"
+#include "relight/light/environment.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
 
 // Mirrors show environments as they are.

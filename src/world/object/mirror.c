@@ -6,7 +6,11 @@
 // angle to the eye or so. A ray that passes behind something goes on: what is there the panorama
 // has not seen. One that hits nothing ends in the far distance. Where light goes between objects
 // and a scene, mirrors show objects, too.
+#include "relight/light/environment.h"
+#include "relight/view/view.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
+#include "world/reflect/reflection.h"
 
 #include <relume/light.h>
 #include <relume/relight/view.h>

@@ -3,9 +3,12 @@
 #define OBJECT_OBJECT_H
 
 #include "core/base/json.h"
+#include "material/model/environment.h"
+#include "material/surface/texels.h"
 #include "shape/mesh/mesh_file.h"
 #include "shape/mesh/trace.h"
 #include "world/baked/baked.h"
+#include "world/object/drawn_objects.h"
 #include "world/transport/scattering.h"
 #include "world/transport/transport.h"
 

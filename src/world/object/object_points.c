@@ -4,10 +4,10 @@
 
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "world/object/object_points.h"
 #include "world/object/skin.h"
 #include "world/transport/pieces.h"
 
-#include <relume/world/points.h>
 #include <string.h>
 
 enum { SCENE_SPOTS = 1 << 16, OBJECT_SPOTS = 1 << 14 };  // as instant.c

@@ -1,11 +1,14 @@
 // objects.c - objects: their materials, their life
-#include "core/base/params.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "core/base/params.h"
 #include "core/base/tree.h"
+#include "material/btf/values.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/levels.h"
 #include "world/object/object.h"
 #include "world/object/skin.h"
+#include "world/reflect/reflection.h"
 #include "world/transport/dipole.h"
 
 #include <relume/exchange.h>

@@ -2,6 +2,7 @@
 // library
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "material/btf/values.h"
 #include "world/object/skin.h"
 
 #include <string.h>

@@ -3,7 +3,9 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
+#include "world/reflect/reflection.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -39,7 +41,7 @@ static relume_status make(relume_reflection **made, const relume_objects *o, int
     return edit ? relume_reflection_create(made, edit, &surface, &own) : RELUME_OK;
 }
 
-static void take(relume_objects *o, int object, relume_reflection *made)
+static void take_reflection(relume_objects *o, int object, relume_reflection *made)
 {
     relume_reflection_destroy(&o->reflection[object]);
     o->reflection[object] = made;
@@ -54,7 +56,7 @@ relume_status relume_objects_set_reflections(relume_objects *o, int object,
     relume_reflection *made;
     const relume_status status = make(&made, o, object, edit, &own);
     if (!status)
-        take(o, object, made);
+        take_reflection(o, object, made);
     return status;
 }
 
@@ -263,7 +265,7 @@ relume_status objects_read_reflections(relume_objects *o, int object, const jval
     relume_reflection *made = NULL;
     const relume_status status = read_reflections(&made, o, object, value, path, params);
     if (!status)
-        take(o, object, made);
+        take_reflection(o, object, made);
     return status;
 }
 
@@ -306,7 +308,7 @@ relume_status relume_objects_load_reflections(relume_objects *o, const char *pat
         status = read_edit_of_file(made, o, i, jvalue_item(list, i), path, &own);
     for (int i = 0; made && i < o->info.objects; i++)
         if (made[i] && !status)
-            take(o, i, made[i]);
+            take_reflection(o, i, made[i]);
         else
             relume_reflection_destroy(&made[i]);
     mem_free(made);

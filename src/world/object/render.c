@@ -1,8 +1,10 @@
 // render.c - the objects ray traced: the reference
 #include "core/base/log.h"
-#include "core/base/params.h"
 #include "core/base/memory.h"
+#include "core/base/params.h"
 #include "core/base/thread.h"
+#include "material/surface/texels.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/levels.h"
 #include "world/object/skin.h"
 

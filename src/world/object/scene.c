@@ -3,6 +3,7 @@
 
 #include "core/base/thread.h"
 #include "shape/mesh/places.h"
+#include "world/object/drawn_objects.h"
 
 // From one pixel to the next: of the steps to both sides the shorter one, which stays on the
 // surface.

@@ -6,6 +6,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/object.h"
 #include "world/transport/glow.h"
 

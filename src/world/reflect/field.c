@@ -7,6 +7,7 @@
 #include "core/base/params.h"
 #include "core/base/thread.h"
 #include "world/reflect/geodesic.h"
+#include "world/reflect/reflection.h"
 
 #include <string.h>
 

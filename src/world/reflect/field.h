@@ -2,6 +2,7 @@
 #ifndef REFLECT_FIELD_H
 #define REFLECT_FIELD_H
 
+#include "world/reflect/reflection.h"
 #include "world/reflect/rotation.h"
 
 #include <relume/world/reflection.h>

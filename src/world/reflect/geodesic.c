@@ -8,6 +8,7 @@
 #include "world/reflect/geodesic.h"
 
 #include "core/base/memory.h"
+#include "world/reflect/reflection.h"
 
 #include <string.h>
 

@@ -3,6 +3,7 @@
 #define REFLECT_GEODESIC_H
 
 #include "core/math/vec.h"
+#include "world/reflect/reflection.h"
 
 #include <relume/world/reflection.h>
 

@@ -1,5 +1,6 @@
 // turn.c - the rotation at a place, and what it does to a reflection
 #include "world/reflect/field.h"
+#include "world/reflect/reflection.h"
 
 // ---------------------------------------------------------------- distances
 

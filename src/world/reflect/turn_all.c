@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/kernel/kernels.h"
+#include "world/reflect/reflection.h"
 
 #include <string.h>
 

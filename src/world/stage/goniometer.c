@@ -4,10 +4,11 @@
 // One period of the relief is measured; around it lies as much of the next periods as light and
 // eyes at the lowest directions can reach across.
 #include "core/base/log.h"
-#include "core/base/params.h"
 #include "core/base/memory.h"
+#include "core/base/params.h"
 #include "core/base/thread.h"
 #include "core/math/random.h"
+#include "material/btf/values.h"
 #include "world/stage/apparatus.h"
 #include "world/stage/relief.h"
 #include "world/stage/render.h"
@@ -34,11 +35,6 @@ const struct relume_btf_material *relume_btf_material_find(const char *name)
 const char *relume_btf_material_name(const struct relume_btf_material *material)
 {
     return material->name;
-}
-
-const char *relume_btf_material_summary(const struct relume_btf_material *material)
-{
-    return material->summary;
 }
 
 struct goniometer {

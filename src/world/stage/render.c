@@ -7,6 +7,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/thread.h"
+#include "image/geometry/geometry.h"
 
 #include <string.h>
 

@@ -1,11 +1,12 @@
 // synth.c - relume_scene_capture: every view under every light into a capture folder
 #include "core/base/arena.h"
 #include "core/base/log.h"
-#include "core/base/params.h"
 #include "core/base/memory.h"
 #include "core/base/names.h"
 #include "core/base/outdir.h"
+#include "core/base/params.h"
 #include "core/base/thread.h"
+#include "image/geometry/geometry.h"
 #include "world/stage/render.h"
 
 #include <errno.h>
@@ -415,17 +416,6 @@ static relume_status write_folder(struct synth *s, const char *path)
     if (!status)
         status = write_manifest(s);
     return outdir_end(&dir, status);
-}
-
-relume_status relume_ring_parse(enum relume_ring *out, const char *name)
-{
-    static const char *const names[] = {[RELUME_RING_4] = "4",
-                                        [RELUME_RING_6] = "6",
-                                        [RELUME_RING_8] = "8",
-                                        [RELUME_RING_CUBE] = "cube"};
-    const int i = name_find(name, names, sizeof names / sizeof *names);
-    *out = (enum relume_ring)(i < 0 ? 0 : i);
-    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 relume_status relume_scene_capture(const relume_scene *scene, const char *dir,

@@ -9,8 +9,11 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/thread.h"
+#include "relight/view/slab_set.h"
 #include "shape/mesh/places.h"
+#include "world/object/drawn_objects.h"
 #include "world/object/levels.h"
+#include "world/tableau/which.h"
 
 #include <string.h>
 

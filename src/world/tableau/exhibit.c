@@ -8,9 +8,12 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/thread.h"
-#include "relight/frame/renderer.h"
-#include "shape/mesh/places.h"
 #include "core/math/bilinear.h"
+#include "relight/frame/renderer.h"
+#include "relight/frame/renderer_views.h"
+#include "relight/frame/viewport.h"
+#include "relight/view/view.h"
+#include "shape/mesh/places.h"
 
 #include <relume/exchange.h>
 #include <relume/relight/view.h>

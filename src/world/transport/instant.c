@@ -203,7 +203,7 @@ struct arrivals {
     int n, room;
 };
 
-static void take(void *context, const struct arrival *a)
+static void collect_arrival(void *context, const struct arrival *a)
 {
     struct arrivals *to = context;
     if (to->n < to->room && (a->with[0] > 0.0f || a->with[1] > 0.0f || a->with[2] > 0.0f))
@@ -228,10 +228,11 @@ static void gather_at_sender(void *context, size_t i, int worker)
     const uint64_t key = random_mix(i);
     const size_t a = step_of(s->on_scene), on_objects = s->lights - s->on_scene;
     if (a)
-        gather_some(b->w, s, &sender->site, key % a, s->on_scene, a, take, &arrivals);
+        gather_some(b->w, s, &sender->site, key % a, s->on_scene, a, collect_arrival, &arrivals);
     const size_t c = step_of(on_objects);
     if (c)
-        gather_some(b->w, s, &sender->site, s->on_scene + key % c, s->lights, c, take, &arrivals);
+        gather_some(b->w, s, &sender->site, s->on_scene + key % c, s->lights, c, collect_arrival,
+                    &arrivals);
     if (sender->site.shines)
         points_object_mean(sender->sent, b->w, &sender->point, key, room, arrivals.n);
     else

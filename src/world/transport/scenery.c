@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/math/distribution.h"
+#include "relight/view/view.h"
 #include "shape/mesh/places.h"
 
 #include <relume/relight/view.h>

@@ -11,9 +11,10 @@
 // all around, and blockers send none.
 #include "world/transport/transport.h"
 
-#include "shape/mesh/places.h"
 #include "core/math/random.h"
 #include "core/math/scalar.h"
+#include "relight/frame/viewport.h"
+#include "shape/mesh/places.h"
 
 // The pixel at which a place appears; false outside.
 static bool pixel_of(size_t *pixel, const struct world *w, vec3 place)

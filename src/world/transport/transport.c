@@ -2,6 +2,7 @@
 #include "world/transport/transport.h"
 
 #include "core/math/random.h"
+#include "world/transport/passes.h"
 
 #include <string.h>
 
@@ -25,11 +26,6 @@ const struct relume_transport *relume_transport_find(const char *name)
 const char *relume_transport_name(const struct relume_transport *transport)
 {
     return transport->name;
-}
-
-const char *relume_transport_summary(const struct relume_transport *transport)
-{
-    return transport->summary;
 }
 
 int relume_transport_samples(const struct relume_transport *transport)

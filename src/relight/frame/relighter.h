@@ -4,18 +4,15 @@
 // Kept for all views: the weight grid of the coder, and what the first refit learned. Kept for each
 // view: its refit and the pictures that its lights gave. A light that is the same as in the call
 // before is not relit where its picture is kept.
-#ifndef RELUME_RELIGHTER_H
-#define RELUME_RELIGHTER_H
+#ifndef FRAME_RELIGHTER_H
+#define FRAME_RELIGHTER_H
+
+#include "relight/shadow/moving.h"
 
 #include <relume/base.h>
 #include <relume/format/coder.h>
 #include <relume/image.h>
 #include <relume/light.h>
-#include <relume/relight/shadow.h>
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 // Thread-safety: one thread at a time.
 typedef struct relume_relighter relume_relighter;
@@ -37,9 +34,9 @@ struct relume_relighter_params {
     (&(const struct relume_relighter_params){RELUME_SIZED(relume_relighter_params), __VA_ARGS__})
 
 // For views 0 to views - 1 of one file. RELUME_EINVAL, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_relighter_create(relume_relighter **out, int views,
-                                                    const struct relume_relighter_params *params);
-RELUME_API void relume_relighter_destroy(relume_relighter **relighter);
+relume_status relume_relighter_create(relume_relighter **out, int views,
+                                      const struct relume_relighter_params *params);
+void relume_relighter_destroy(relume_relighter **relighter);
 
 // One view of the file under lights. Everything is borrowed for the call; `codes` of one view are
 // the same in every call until relume_relighter_drop.
@@ -56,26 +53,20 @@ struct relume_relit {
 
 // The picture of relume_relight in `*out`; it belongs to the relighter and holds until the next
 // call for that view. Errors of relume_relight.
-RELUME_RESULT relume_status relume_relighter_picture(const struct relume_image **out,
-                                                     relume_relighter *relighter,
-                                                     const struct relume_relit *relit);
+relume_status relume_relighter_picture(const struct relume_image **out, relume_relighter *relighter,
+                                       const struct relume_relit *relit);
 // The same into the caller's image, as relume_relight, and nothing of the picture is kept.
-RELUME_RESULT relume_status relume_relighter_relight(struct relume_image *out,
-                                                     relume_relighter *relighter,
-                                                     const struct relume_relit *relit);
+relume_status relume_relighter_relight(struct relume_image *out, relume_relighter *relighter,
+                                       const struct relume_relit *relit);
 // The same as relume_relight_rgba8.
-RELUME_RESULT relume_status relume_relighter_rgba8(uint8_t *out, relume_relighter *relighter,
-                                                   const struct relume_relit *relit,
-                                                   double exposure_ev);
+relume_status relume_relighter_rgba8(uint8_t *out, relume_relighter *relighter,
+                                     const struct relume_relit *relit, double exposure_ev);
 
 // Forget a view: its pictures and its refit.
-RELUME_API void relume_relighter_drop(relume_relighter *relighter, int view);
+void relume_relighter_drop(relume_relighter *relighter, int view);
 // Forget the pictures of all views: what a light points at has changed or is gone.
-RELUME_API void relume_relighter_forget(relume_relighter *relighter);
+void relume_relighter_forget(relume_relighter *relighter);
 // What is kept of a view, bytes.
-RELUME_API uint64_t relume_relighter_bytes(const relume_relighter *relighter, int view);
+uint64_t relume_relighter_bytes(const relume_relighter *relighter, int view);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

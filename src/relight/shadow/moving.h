@@ -1,4 +1,4 @@
-// shadow.h - shadows and highlights that wander with the light
+// moving.h - shadows and highlights that wander with the light
 //
 // Between two captured lights interpolation fades one shadow out and another in. Where depth is
 // known the edge can move instead. With rho_i captured under light i, w_i the weights of the lights
@@ -17,8 +17,8 @@
 // the pixel's normal, colour and gloss shows (GGX, relume/material/maps.h). The share is that with
 // which the captured lights, each left out, are foretold best: where the model does not fit it is
 // 0.
-#ifndef RELUME_SHADOW_H
-#define RELUME_SHADOW_H
+#ifndef SHADOW_MOVING_H
+#define SHADOW_MOVING_H
 
 #include <relume/base.h>
 #include <relume/capture.h>
@@ -27,12 +27,8 @@
 #include <relume/light.h>
 #include <relume/pack.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
 // Whether rays can be traced through views of that geometry: not cubes and cylinders with discs.
-RELUME_API bool relume_shadows_suit(const struct relume_geometry *geometry);
+bool relume_shadows_suit(const struct relume_geometry *geometry);
 
 // One view whose shadows can be traced. Thread-safety: one thread at a time.
 typedef struct relume_shadows relume_shadows;
@@ -40,25 +36,23 @@ typedef struct relume_shadows relume_shadows;
 // `depth` is one channel of distances along rays, infinite for background; `model` what
 // relume_shadows_learn found. Both are copied. RELUME_EINVAL for geometries that do not suit and
 // images of other sizes, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_create(relume_shadows **out,
-                                                  const struct relume_geometry *geometry,
-                                                  const double uv[2],
-                                                  const struct relume_image *depth,
-                                                  const struct relume_image *model);
-RELUME_API void relume_shadows_destroy(relume_shadows **shadows);
+relume_status relume_shadows_create(relume_shadows **out, const struct relume_geometry *geometry,
+                                    const double uv[2], const struct relume_image *depth,
+                                    const struct relume_image *model);
+void relume_shadows_destroy(relume_shadows **shadows);
 // Shadows or highlights of a view of a file, ready to be added; NULL when the file has neither.
 // Where the file was opened with `keep_going` a damaged model is a warning, said once, and NULL.
 // The caller destroys `*out`. RELUME_EINVAL for a view that is not there, RELUME_EDAMAGED,
 // RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_open(relume_shadows **out, relume_pack *pack, int view);
+relume_status relume_shadows_open(relume_shadows **out, relume_pack *pack, int view);
 // What is kept, bytes: it grows with the captured lights that were asked for.
-RELUME_API uint64_t relume_shadows_bytes(const relume_shadows *shadows);
+uint64_t relume_shadows_bytes(const relume_shadows *shadows);
 
 enum { RELUME_SHADOW_REACHED = 36 };
 // What share of each pixel, and a little of those beside it, light from a unit direction (world)
 // reaches: `out[height][width]`, 0 to RELUME_SHADOW_REACHED. Background is reached. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_trace(uint8_t *out, const relume_shadows *shadows,
-                                                 struct relume_vec3 direction, int threads);
+relume_status relume_shadows_trace(uint8_t *out, const relume_shadows *shadows,
+                                   struct relume_vec3 direction, int threads);
 
 // How a view is learnt. Borrowed during the call.
 struct relume_shadows_params {
@@ -73,9 +67,8 @@ struct relume_shadows_params {
 // Learn a view of a capture with distant lights: `*model` is created with RELUME_SHADOW_CHANNELS
 // channels. All photographs of the view are held at two bytes a pixel. RELUME_EINVAL where there is
 // no depth or the geometry does not suit, an input status, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_learn(struct relume_image *model,
-                                                 const relume_capture *capture, int view,
-                                                 const struct relume_shadows_params *params);
+relume_status relume_shadows_learn(struct relume_image *model, const relume_capture *capture,
+                                   int view, const struct relume_shadows_params *params);
 
 // What relume_shadows_judge finds: PSNR in dB of display values over all pixels of some captured
 // lights that are left out and met again. Plain data.
@@ -86,71 +79,60 @@ struct relume_shadows_gain {
 };
 // Whether tracing helps a view; `display`: codes will be of the display domain. At least 8 lights,
 // else RELUME_EINVAL. Errors of relume_shadows_learn.
-RELUME_RESULT relume_status relume_shadows_judge(struct relume_shadows_gain *out,
-                                                 const relume_capture *capture, int view,
-                                                 bool display,
-                                                 const struct relume_shadows_params *params);
+relume_status relume_shadows_judge(struct relume_shadows_gain *out, const relume_capture *capture,
+                                   int view, bool display,
+                                   const struct relume_shadows_params *params);
 
 // As relume_shadows_create, of what relume_gloss_learn found, for planar views that are seen
 // orthographically. RELUME_EINVAL for other channels, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_gloss_create(relume_shadows **out,
-                                                const struct relume_image *model);
+relume_status relume_gloss_create(relume_shadows **out, const struct relume_image *model);
 
 // Learn the view of a planar orthographic capture with distant lights; `display`: codes will be of
 // the display domain. `*model` is created with RELUME_GLOSS_CHANNELS channels. `skip` must be NULL.
 // RELUME_EINVAL for other captures, errors of relume_maps_fit and relume_coder_learn.
-RELUME_RESULT relume_status relume_gloss_learn(struct relume_image *model,
-                                               const relume_capture *capture, bool display,
-                                               const struct relume_shadows_params *params);
+relume_status relume_gloss_learn(struct relume_image *model, const relume_capture *capture,
+                                 bool display, const struct relume_shadows_params *params);
 // As relume_shadows_judge, `traced_db` being that of wandering highlights; means of the lights'
 // decibels. Of pictures more than 64 pixels wide or high 8 x 8 pieces of 8 pixels are judged,
 // spread evenly.
-RELUME_RESULT relume_status relume_gloss_judge(struct relume_shadows_gain *out,
-                                               const relume_capture *capture, bool display,
-                                               const struct relume_shadows_params *params);
+relume_status relume_gloss_judge(struct relume_shadows_gain *out, const relume_capture *capture,
+                                 bool display, const struct relume_shadows_params *params);
 
 // Add the last two terms to a picture of one light, which is linear and becomes black where it
 // would be less. The picture is the rectangle of the view at `left`, `top` of its size, relit from
 // codes of `coder` and `domain` (`display`: its curve). Area lights are 4 x 4 patches. Highlights
 // do not wander under near lights. RELUME_EINVAL for environments, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
-                                               relume_shadows *shadows,
-                                               const struct relume_codes *codes,
-                                               const struct relume_light *light, int threads);
+relume_status relume_shadows_add(struct relume_image *picture, int left, int top,
+                                 relume_shadows *shadows, const struct relume_codes *codes,
+                                 const struct relume_light *light, int threads);
 
 enum { RELUME_SHADOW_LAMPS = 64 };
 // Finds the bright sources of an environment map, such as the sun or windows, whose shadows have
 // edges. They are those of RELUME_SHADOW_LAMPS lights (relume_environment_sample) that have more
 // than an even share of the luminance and lie within the captured lights of the coder. The first
 // *count of `out[RELUME_SHADOW_LAMPS]` are directional lights. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_bright_sources(struct relume_light *out, int *count,
-                                                          const struct relume_light *environment,
-                                                          const relume_coder *coder);
+relume_status relume_shadows_bright_sources(struct relume_light *out, int *count,
+                                            const struct relume_light *environment,
+                                            const relume_coder *coder);
 // The same as relume_shadows_add for one of them: the picture is what an environment that has
 // nothing but this source shows (relume_environment_weights), whatever the domain of the codes. So
 // what the source takes off in a pixel is at most what it brings there.
-RELUME_RESULT relume_status relume_shadows_add_bright_source(struct relume_image *picture, int left,
-                                                             int top, relume_shadows *shadows,
-                                                             const relume_coder *coder,
-                                                             const struct relume_light *source,
-                                                             int threads);
-
-// ---- for programs that trace and add by means of their own, as shaders do
+relume_status relume_shadows_add_bright_source(struct relume_image *picture, int left, int top,
+                                               relume_shadows *shadows, const relume_coder *coder,
+                                               const struct relume_light *source, int threads);
 
 // The captured lights around a direction, by which the sums above go: `light` and `weight` have
 // room for all lights of the coder, the first *count are in use; at most 4 of traced shadows, none
 // where the direction is a captured light's. `direction` is unit, as relume_coder_clamp gives it;
 // `summed`: for a bright source of an environment. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_around(int *light, float *weight, int *count,
-                                                  relume_shadows *shadows,
-                                                  const relume_coder *coder,
-                                                  struct relume_vec3 direction, bool summed);
+relume_status relume_shadows_around(int *light, float *weight, int *count, relume_shadows *shadows,
+                                    const relume_coder *coder, struct relume_vec3 direction,
+                                    bool summed);
 
 // What these weights are of traced shadows: a `table` of the lights of `coder`, interpolated over
 // triangles. It belongs to the shadows. RELUME_EINVAL for highlights, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_shadows_between(const relume_coder **out,
-                                                   relume_shadows *shadows,
-                                                   const relume_coder *coder);
+relume_status relume_shadows_between(const relume_coder **out, relume_shadows *shadows,
+                                     const relume_coder *coder);
 
 // How the rays of a view lie in its coordinates, whose origin is the eye, or of parallel rays the
 // middle of the plane; the axis is -z, the pole of panoramas y. A pixel is scale x + shift, of x
@@ -186,10 +168,6 @@ struct relume_shadows_stage {
     const float *span;  // [height + 1][width + 1][2]: nearest and farthest of the pixels around a
                         // corner
 };
-RELUME_API void relume_shadows_look(struct relume_shadows_stage *out,
-                                    const relume_shadows *shadows);
+void relume_shadows_look(struct relume_shadows_stage *out, const relume_shadows *shadows);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

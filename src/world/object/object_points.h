@@ -1,5 +1,5 @@
-// points.h - surfaces as points that gather and send light, for those who do with them what ways of
-// transport do (transport.h), as the viewer does on the graphics card
+// object_points.h - surfaces as points that gather and send light, for those who do with them what
+// ways of transport do (transport.h), as the viewer does on the graphics card
 //
 // A tree of balls stands for all points in it (QSplat: Rusinkiewicz and Levoy 2000; Ritschel,
 // Engelhardt, Grosch, Seidel, Kautz, Dachsbacher 2009, "Micro-rendering for scalable, parallel
@@ -10,17 +10,13 @@
 //
 // Lengths are in the unit of the world. What points send under some light is not here: that is for
 // who gathers. Thread-safety: plain data; the calls may be made from any thread.
-#ifndef RELUME_POINTS_H
-#define RELUME_POINTS_H
+#ifndef OBJECT_OBJECT_POINTS_H
+#define OBJECT_OBJECT_POINTS_H
 
 #include <relume/base.h>
 #include <relume/capture.h>
 #include <relume/image.h>
 #include <relume/world/object.h>
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 enum { RELUME_POINTS_WAYS = 8, RELUME_POINTS_LEVELS = 8 };
 
@@ -88,19 +84,15 @@ struct relume_points_params {
 // Of a captured view of that geometry, whose pixels show `places` (three channels; NaN: nothing) to
 // the geometry's eye; `objects` (NULL: none) stand in it, so that its background lies behind them.
 // RELUME_EINVAL (channels), RELUME_ENOMEM, RELUME_ESYSTEM when Embree is missing.
-RELUME_RESULT relume_status relume_points_of_scene(struct relume_points *out,
-                                                   const struct relume_geometry *geometry,
-                                                   const struct relume_image *places,
-                                                   const relume_objects *objects,
-                                                   const struct relume_points_params *params);
+relume_status relume_points_of_scene(struct relume_points *out,
+                                     const struct relume_geometry *geometry,
+                                     const struct relume_image *places,
+                                     const relume_objects *objects,
+                                     const struct relume_points_params *params);
 // Of objects in the materials that they show: out[0] as light gets to them, out[1] the backs of
 // what it gets to from both sides. RELUME_EINVAL (leaves), RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_points_of_objects(struct relume_points out[2],
-                                                     const relume_objects *objects,
-                                                     const struct relume_points_params *params);
-RELUME_API void relume_points_free(struct relume_points *points);
+relume_status relume_points_of_objects(struct relume_points out[2], const relume_objects *objects,
+                                       const struct relume_points_params *params);
+void relume_points_free(struct relume_points *points);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

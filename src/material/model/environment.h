@@ -1,18 +1,12 @@
-// btf_environment.h - environment light on measured materials: prefiltered maps for models of
+// environment.h - environment light on measured materials: prefiltered maps for models of
 // lobes, sums over the measured lights for all others (Meseth 2008, 9.4; McAllister, Lastra,
 // Heidrich 2002)
-#ifndef RELUME_BTF_ENVIRONMENT_H
-#define RELUME_BTF_ENVIRONMENT_H
+#ifndef MODEL_ENVIRONMENT_H
+#define MODEL_ENVIRONMENT_H
 
 #include <relume/base.h>
 #include <relume/light.h>
 #include <relume/material/btf.h>
-
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-// ---------------------------------------------------------------- prefiltered maps
 
 // An environment as lobes see it. Never changes. Thread-safety: safe.
 typedef struct relume_prefiltered_maps relume_prefiltered_maps;
@@ -37,10 +31,10 @@ struct relume_prefiltered_maps_params {
                                                     __VA_ARGS__})
 
 // `light` is an environment; its colour and rotation are taken over. RELUME_EINVAL, RELUME_ENOMEM.
-RELUME_RESULT relume_status
-relume_prefiltered_maps_create(relume_prefiltered_maps **out, const struct relume_light *light,
-                               const struct relume_prefiltered_maps_params *params);
-RELUME_API void relume_prefiltered_maps_destroy(relume_prefiltered_maps **prefiltered);
+relume_status relume_prefiltered_maps_create(relume_prefiltered_maps **out,
+                                             const struct relume_light *light,
+                                             const struct relume_prefiltered_maps_params *params);
+void relume_prefiltered_maps_destroy(relume_prefiltered_maps **prefiltered);
 
 // Plain arrays for other renderers; they belong to the maps. Maps are spherical (row 0 is up
 // +y, the middle column -z, +x to its right, pixel centres at +0.5), so that bilinear lookups
@@ -60,25 +54,20 @@ struct relume_prefiltered_maps_info {
     const float *part;
 };
 // It and its arrays belong to the maps.
-RELUME_API const struct relume_prefiltered_maps_info *relume_prefiltered_maps_info(
+const struct relume_prefiltered_maps_info *relume_prefiltered_maps_info(
     const relume_prefiltered_maps *prefiltered);
 
 // The maps in a unit direction of the world, `exponent` > 0.
-RELUME_API void relume_prefiltered_maps_diffuse(float rgb[3],
-                                                const relume_prefiltered_maps *prefiltered,
-                                                struct relume_vec3 normal);
+void relume_prefiltered_maps_diffuse(float rgb[3], const relume_prefiltered_maps *prefiltered,
+                                     struct relume_vec3 normal);
 // The mean under a lobe about a unit direction, `exponent` > 0.
-RELUME_API void relume_prefiltered_maps_specular(float rgb[3],
-                                                 const relume_prefiltered_maps *prefiltered,
-                                                 struct relume_vec3 axis, double exponent);
+void relume_prefiltered_maps_specular(float rgb[3], const relume_prefiltered_maps *prefiltered,
+                                      struct relume_vec3 axis, double exponent);
 // What a lobe height * max(0, axis.l)^exponent shows on a surface facing `normal`. `cosine`: values
 // do not include n.l.
-RELUME_API void relume_prefiltered_maps_lobe(float rgb[3],
-                                             const relume_prefiltered_maps *prefiltered,
-                                             struct relume_vec3 normal, struct relume_vec3 axis,
-                                             double exponent, bool cosine);
-
-// ---------------------------------------------------------------- a material in one orientation
+void relume_prefiltered_maps_lobe(float rgb[3], const relume_prefiltered_maps *prefiltered,
+                                  struct relume_vec3 normal, struct relume_vec3 axis,
+                                  double exponent, bool cosine);
 
 // What an environment sends to a surface that lies one way in the world: each measured light stands
 // for the directions around it, with the weights that interpolation gives it, so that the sum over
@@ -106,25 +95,22 @@ struct relume_btf_oriented_light_params {
 
 // Some 2000 directions are interpolated: a few milliseconds. Both objects must outlive it.
 // RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_btf_oriented_light_create(
+relume_status relume_btf_oriented_light_create(
     relume_btf_oriented_light **out, const relume_btf_fitted *model,
     const relume_prefiltered_maps *prefiltered, const struct relume_btf_frame *frame,
     const struct relume_btf_oriented_light_params *params);
-RELUME_API void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient);
+void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient);
 
 // The weights of the measured lights [lights][3]: red, green, blue of the light i times a value
 // under that light, summed over i, is the value under the environment. For renderers of linear
 // models.
-RELUME_API const float *relume_btf_oriented_light_weights(const relume_btf_oriented_light *ambient);
+const float *relume_btf_oriented_light_weights(const relume_btf_oriented_light *ambient);
 
 // One texel of a level of detail from a direction in the frame of the sample, under the
 // environment. Models of lobes (laf, slaf, rfnl, rfnlc) look their lobes up in the prefiltered
 // maps, all others are summed over the measured lights.
-RELUME_API void relume_btf_oriented_light_evaluate(const relume_btf_oriented_light *ambient,
-                                                   int level, int x, int y, struct relume_vec3 view,
-                                                   float rgb[3]);
-
-// ---------------------------------------------------------------- a material in any orientation
+void relume_btf_oriented_light_evaluate(const relume_btf_oriented_light *ambient, int level, int x,
+                                        int y, struct relume_vec3 view, float rgb[3]);
 
 // For surfaces that bend. Between measured lights values are interpolated, so that a light
 // represents the directions around it; here by a cosine lobe of the same integral, mean direction
@@ -141,19 +127,15 @@ typedef struct relume_btf_environment relume_btf_environment;
 
 // Some milliseconds. Model and maps must outlive it; the rim of the maps is the model's
 // own. RELUME_ENOMEM.
-RELUME_RESULT relume_status
-relume_btf_environment_create(relume_btf_environment **out, const relume_btf_fitted *model,
-                              const relume_prefiltered_maps *prefiltered);
-RELUME_API void relume_btf_environment_destroy(relume_btf_environment **sky);
+relume_status relume_btf_environment_create(relume_btf_environment **out,
+                                            const relume_btf_fitted *model,
+                                            const relume_prefiltered_maps *prefiltered);
+void relume_btf_environment_destroy(relume_btf_environment **sky);
 // [lights]; they belong to the sky.
-RELUME_API const struct relume_btf_light_lobe *relume_btf_environment_cones(
-    const relume_btf_environment *sky);
+const struct relume_btf_light_lobe *relume_btf_environment_cones(const relume_btf_environment *sky);
 // The part of the environment that light number `i` of the model represents in an orientation:
 // relume_btf_oriented_light_weights.
-RELUME_API void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *sky,
-                                              const struct relume_btf_frame *frame, int i);
+void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *sky,
+                                   const struct relume_btf_frame *frame, int i);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

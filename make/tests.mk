@@ -1,6 +1,6 @@
 # tests.mk - tests, benches, fuzz targets, and checks of the sources.
 
-.PHONY: test check check-threads coverage compile-tests bench fuzz fuzzers replay golden headers layers metrics lint lint-code lint-words format
+.PHONY: test check check-threads coverage compile-tests bench fuzz fuzzers replay golden headers kept layers metrics lint lint-code lint-words format
 
 UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
 GL_C     := $(wildcard tests/gl/*.c)
@@ -109,6 +109,11 @@ replay: $(FUZZ)
 # The frames that tests/cli/test_golden.sh compares with, to be looked at before they are committed
 golden: cli viewer
 	@RELUME=$(CURDIR)/$B/relume VIEWER=$(CURDIR)/$B/relume-view TOP=$(CURDIR) BUILD=$(CURDIR)/$B STORE=1 tests/cli/test_golden.sh
+
+# Small files of each kind that this version writes, for every later one to read (tests/cli/test_kept.sh): only
+# missing files are added. Each version of the format has a folder.
+kept: cli $B/samples/sphere
+	@scripts/kept.sh add $B tests/kept/$(shell sed -n 's/^.define RELUME_VERSION "\([0-9]*[.][0-9]*\)[.].*/\1/p' include/relume/base.h)
 
 # ---------------------------------------------------------------- the sources
 

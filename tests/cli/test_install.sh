@@ -89,6 +89,18 @@ says() { # name, status, words, command...: a sample ends so and says so
 }
 says "batch.c goes on after a file that is none" 1 'box-lit.png' ./batch lit 1 0.5 1 none.exr box.exr
 says "batch.c says which file is none" 1 'none.exr: no such file' ./batch lit 1 0.5 1 none.exr box.exr
+sample ten_calls
+"$RELUME" synth box -o capture --size 32 --lights 20 --hemisphere --samples 1 -q
+says "ten_calls.c does ten jobs" 0 '20 lights, PSNR [3-9][0-9]' ./ten_calls capture out
+for made in out.exr out.png out.rti out-site/index.html; do check "ten_calls.c makes $made" test -s $made; done
+"$RELUME" encode capture -o plain.exr -q
+same "ten_calls.c encodes as the tool does" out.exr plain.exr
+"$RELUME" relight plain.exr -o plain.png --light "dir 1 0.5 1 rgb 1 0.9 0.8" -q
+same "ten_calls.c draws as the tool does" out.png plain.png
+says "ten_calls.c says what is wrong" 1 'nothing: cannot be opened' ./ten_calls nothing out
+check "ten_calls.c needs the core alone" test "$(grep -c '#include <relume/' "$TOP/samples/ten_calls.c") $(grep -c '#include <relume/relume.h>' "$TOP/samples/ten_calls.c")" = "1 1"
+sed -n '/^```c$/,/^```$/p' "$TOP/docs/api-in-ten-calls.md" | sed '1d;$d' >shown.c
+same "api-in-ten-calls.md shows ten_calls.c" shown.c "$TOP/samples/ten_calls.c"
 if pkg-config --exists glfw3 gl; then
     sample viewer "$(pkg-config --libs glfw3 gl) -lm"
     if [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then

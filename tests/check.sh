@@ -12,6 +12,8 @@ export LSAN_OPTIONS="suppressions=$here/gl/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$here/threads/tsan.supp"
 # Drawing in software compiles each shader first, which takes longer than small frames: narrow vectors compile faster.
 export LP_NATIVE_VECTOR_WIDTH=128
+# Shaders that draw a few small frames gain less by LLVM's optimizer than it takes (measured in docs/measurements/building.md).
+export GALLIVM_PERF=nopt
 logs=$(mktemp -d) || exit 1
 trap 'rm -rf "$logs"' EXIT
 passed=0 failed=0 skipped=0 total=0

@@ -69,7 +69,7 @@ expect_ok 'maps of a .rti' 'lights that were not used' "$RELUME" maps file.rti -
 "$RELUME" export file.exr -o web --to relight -q
 expect_ok 'maps of a web folder' 'lights that were not used' "$RELUME" maps web -o of-web
 "$RELUME" synth box --projection slab -o slab --size 16 --lights 12 --hemisphere --samples 1 -q
-"$RELUME" encode slab -o slab.exr -q
+"$RELUME" encode slab -o slab.exr --basis pca --shadows no -q
 for from in slab slab.exr; do
     "$RELUME" maps $from -o first --force -q && "$RELUME" maps $from -o third --force --view 2 -q
     check "$from: its views differ" sh -c '! cmp -s first/basecolor.exr third/basecolor.exr'

@@ -34,9 +34,9 @@ below 'groups, shadows: the size is kept' "$(wc -c <groups.exr)" $((24 * 24 * 16
 below 'groups, shadows: the size is used' $((24 * 24 * 16 * 7 / 2 * 95 / 100)) "$(wc -c <groups.exr)"
 
 # ---- what cannot be had is said
-expect_ok 'too low a quality' 'dB PSNR .*; its coarsest coding is better than 10 dB' "$RELUME" encode bust -o worst.exr --basis table --psnr 10 --force
-expect_ok 'too few bytes' 'it needs more than 0.001 bytes a pixel' "$RELUME" encode bust -o worst.exr --basis table --bytes-per-pixel 0.001 --force
-expect_ok 'too many bytes' 'its finest coding needs less than 100 bytes a pixel' "$RELUME" encode bust -o best.exr --basis table --bytes-per-pixel 100 --force
+expect_ok 'too low a quality' 'dB PSNR .*; its coarsest coding is better than 10 dB' "$RELUME" encode bust -o worst.exr --psnr 10 --force
+expect_ok 'too few bytes' 'it needs more than 0.001 bytes a pixel' "$RELUME" encode bust -o worst.exr --bytes-per-pixel 0.001 --force
+expect_ok 'too many bytes' 'its finest coding needs less than 100 bytes a pixel' "$RELUME" encode bust -o best.exr --bytes-per-pixel 100 --force
 
 # ---- components or pictures: as good as the better of the two, which a closer search may miss by
 # a tenth of a decibel; pictures by an interpolant that uses all lights and smooths nothing

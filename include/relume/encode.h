@@ -25,7 +25,7 @@ extern "C" {
 // A choice between shadows or highlights that move with the light, and those that fade.
 enum relume_moving {
     RELUME_MOVING_DEFAULT = 0,
-    RELUME_MOVING_AUTO,  // they move where that predicts photographs left out better
+    RELUME_MOVING_AUTO,  // they move where that predicts held-out lights better
     RELUME_MOVING_YES,
     RELUME_MOVING_NO,
 };
@@ -53,7 +53,7 @@ struct relume_encode_capture_params {
     bool no_ridge;                                 // as relume_coder_params
     enum relume_domain domain;       // default with auto: by the error; other bases: by the capture
     struct relume_transfer display;  // the curve of DOMAIN_DISPLAY, as relume_encode_params
-    // Traced through the depth. Default with auto: MOVING_AUTO without loss and from
+    // Traced through the depth. Default with auto: MOVING_AUTO for lossless files and from
     // bytes_per_pixel 1 on. Other bases: NO.
     enum relume_moving shadows;
     // Of planar captures without traced shadows. Default with auto: MOVING_AUTO without loss and
@@ -91,7 +91,7 @@ struct relume_encode_capture_params {
                                                   __VA_ARGS__})
 
 // Checks params before there is a capture, as relume_encode_capture does. RELUME_EINVAL with a
-// sentence for params that are out of range or exclude each other. Sentences name the options of
+// message for params that are out of range or exclude each other. Messages name the options of
 // `relume encode`.
 RELUME_RESULT relume_status relume_encode_check(const struct relume_encode_capture_params *params);
 // Returns true if photographs are read more than once: relume_capture_params.keep_bytes helps then.
@@ -151,7 +151,7 @@ struct relume_encode_result {
     bool lossy;                            // coded with loss
     struct relume_encode_report measured;  // over all views
     double unseen_db;   // predicted PSNR of light directions that were not captured; 0: unknown
-    double quality_db;  // that was asked for, or the usual one of basis auto; else 0
+    double quality_db;  // that was asked for, or the default of basis auto; 0: none
     enum relume_reach reach;  // of it, bytes_per_pixel or jnd
     double jnd;               // that 99 % of the pixels of every photograph keep; 0: not judged
     double file_bytes;        // 0 of pipes and devices

@@ -128,7 +128,7 @@ check "a function of a wing below is allowed" sh -c \
      "$TOP/scripts/layers.sh" --symbols "$PWD/obj/src/image/image/a.o" "$PWD/obj/src/core/math/b.o"'
 rm -r obj
 plant "a private header of a stranger" src/cli/commands/cmd_info.c '#include "format/pack/format.h"' format/pack/format.h
-plant "a private header in the viewer" viewer/app/app.c '#include "core/base/log.h"' core/base/log.h
+plant "a private header of the tool in the viewer" viewer/app/app.c '#include "cli/plot.h"' cli/plot.h
 plant "a header of a room above" viewer/gl/gl.c '#include "draw/draw.h"' draw/draw.h
 plant "a private header in a sample" samples/minimal.c '#include "core/base/log.h"' core/base/log.h
 plant "a public header from above" src/format/coder/fit.c '#include <relume/frame.h>' '<relume/frame.h>'

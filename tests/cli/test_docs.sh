@@ -13,7 +13,8 @@ docs="$TOP/docs"
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
 # options of other programs that the texts use, a mistake that they show, and old spellings
 printf '%s\n' --cflags --libs --static --info --version --rm --entrypoint --user --userns --lihgt --table --hdr --slab --panorama --no-build-isolation \
-    --coverage --arrows --copies --inside --small --state --without-comment >>known.txt
+    --coverage --arrows --copies --inside --small --state --without-comment \
+    --nearest >>known.txt
 # anchors of a page: its headings as web pages of Git hosts name them, once each, and its own <a id>
 anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'
     sed -n 's/.*<a id="\([^"]*\)">.*/\1/p' "$1"; }

@@ -21,14 +21,14 @@ struct relume_pack_encode_params {
     enum relume_step step;
     enum relume_compression compression;
     int threads;
-    const struct relume_books_params *books;  // codebooks instead of planes; threads are
-                                              // those of this struct
+    const struct relume_books_params *books;  // codebooks instead of planes; their threads
+                                              // are not read
     bool share;                               // one set of codebooks for all views
     bool no_depth;                            // leave depth out: no near lights, no views by depth
     enum relume_pyramid pyramid;              // reduced levels of large views
-    // With loss: as few bytes as reproduce the captured images at this PSNR (that of
+    // Lossy: as few bytes as reproduce the captured images at this PSNR (that of
     // relume_evaluation.psnr_pooled_db), or as good as so many bytes of the file for each pixel of
-    // each view allow. At most one of the two; 0: without loss. `storage`, `step`, `compression`
+    // each view allow. At most one of the two; 0: lossless. `storage`, `step`, `compression`
     // and `books` do not count then.
     double psnr_db, bytes_per_pixel;
     const struct relume_writer *writer;  // write here in place of the file, as
@@ -68,7 +68,7 @@ RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_
                                                const struct relume_coder_params *coder,
                                                const struct relume_pack_encode_params *encode);
 // One file of all parts: what relume_pack_encode would have written in one go, byte for byte.
-// RELUME_EUNFIT with a sentence when a part is missing or doubled or does not belong to the others;
+// RELUME_EUNFIT with a message when a part is missing or doubled or does not belong to the others;
 // an input status when one is damaged; RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. `report` may be
 // NULL. Of `params` log, limits, threads and writer are used.
 RELUME_RESULT relume_status relume_pack_join(const char *const *parts, int count, const char *path,

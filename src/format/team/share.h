@@ -21,7 +21,7 @@ struct team_work {
     // Starts the share of `member` without results.
     relume_status (*begin)(void *context, int member);
     relume_status (*compute)(void *context);
-    // Joins the results to those of the members before.
+    // Joins the results to the ones of earlier members.
     relume_status (*add)(void *context);
 };
 // Results of the share that has begun, as bytes. `fetch` checks what it reads: RELUME_EDAMAGED, or
@@ -32,7 +32,7 @@ struct team_bytes {
 };
 
 // Does the step `what` (a name as relume_team has it) with all its shares. `team` NULL: one
-// machine, which needs no bytes. A status of the work or of sharing, with a sentence;
+// machine, which needs no bytes. A status of the work or of sharing, with a message;
 // RELUME_ENOMEM.
 relume_status team_share(const struct relume_team *team, const char *what,
                          const struct team_work *work, void *context,

@@ -25,7 +25,7 @@ struct exchange {
     float sends;  // of what objects send of their own, under each light
     int spacing;  // pixels from one that gathers to the next
     const struct bodies *bodies;
-    const struct scenery *const *before;  // [befores]: all that stands before lamps, for `share`
+    const struct scenery *const *before;  // [befores]: all that blocks lamps, for `share`
     int befores;
     struct layer scene, objects, frame;
     float *behind;  // [pixels]: how far off the eye the backs of objects are

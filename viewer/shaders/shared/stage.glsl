@@ -70,7 +70,7 @@ vec2 span_at(vec2 at)
     return texelFetch(span, ivec2(at + 0.5), 0).rg;
 }
 
-// Between four pixels of one surface what lies on their plane, else the nearest of them.
+// The plane of four pixels where they are of one surface; elsewhere the nearest of them.
 float surface_at(vec2 at)
 {
     ivec2 first = ivec2(at + 0.5) - 1;

@@ -2,7 +2,7 @@
 //
 //     cc -std=c11 batch.c $(pkg-config --cflags --libs relume) -o batch
 //     ./batch raking 1 0 0.2 *.exr        # statue.exr -> statue-raking.png
-#include <relume/extensions.h>
+#include <relume/relume.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,8 @@
 //     cc -std=c11 memory.c $(pkg-config --cflags --libs relume) -lm -o memory
 //     ./memory
 #include <math.h>
-#include <relume/extensions.h>
+#include <relume/image/directions.h>
+#include <relume/relume.h>
 #include <stdio.h>
 #include <stdlib.h>
 

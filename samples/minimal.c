@@ -2,7 +2,7 @@
 //
 //     cc -std=c11 minimal.c $(pkg-config --cflags --libs relume) -o minimal
 //     ./minimal statue.exr statue.png
-#include <relume/extensions.h>
+#include <relume/relume.h>
 #include <stdio.h>
 
 static void say(void *user, enum relume_level level, const char *text)

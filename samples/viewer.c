@@ -4,7 +4,7 @@
 //     ./viewer statue.exr
 #include <GLFW/glfw3.h>
 #include <math.h>
-#include <relume/extensions.h>
+#include <relume/relume.h>
 #include <stdio.h>
 #include <stdlib.h>
 

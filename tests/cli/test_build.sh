@@ -3,6 +3,7 @@
 # layer rules hold for this tree and would notice if they did not.
 . "$(dirname "$0")/lib.sh"
 unset MAKEFLAGS
+CC=${CC:-gcc}
 make -s -C "$TOP" config=$config all >make.txt 2>&1 || not_ok "make" "$(tail -n 5 make.txt)"
 if make -q -C "$TOP" config=$config all >make.txt 2>&1; then
     ok "nothing is rebuilt when nothing changed"

@@ -63,13 +63,13 @@ struct relume_frame_params {
     const relume_capture
         *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
     enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
-    double aperture, focus;     // slab; as relume_view_params, several: relume_lens_window
-    enum relume_filter filter;  // as relume_view_params, and of views in another size
+    double aperture, focus;                   // slab; as relume_view_params
+    enum relume_filter filter;                // as relume_view_params, and of views in another size
     uint64_t memory;  // bytes that a renderer keeps between frames; default: 1 GiB. One frame may
                       // need more
     // How strong `pass` is; pictures, range and threads in it are not looked at. Default: NULL.
     const struct relume_pass_params *strength;
-    bool once;    // a renderer draws one frame, as relume_relighter_params; relume_frame does
+    bool once;    // a renderer draws one frame, and keeps nothing for the next; relume_frame does
     bool masked;  // relume_frame of a captured view at its own size: black outside of its mask
 };
 #define relume_frame_params(...)                                                                   \

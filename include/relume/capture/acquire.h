@@ -48,8 +48,8 @@ struct relume_acquire_params {
     double ball_z;                         // height of the balls' middles, world units
     double fov_deg;                        // horizontal field of view; default: orthographic
     double focal_mm;                       // the same as a focal length, for a sensor 36 mm wide
-    bool refine_lights;                    // relume_acquire_refine of directions and brightness
-    bool refine_brightness;                // relume_acquire_refine of the brightness alone
+    bool refine_lights;                    // directions and brightness, by the photographs
+    bool refine_brightness;                // the brightness alone, by the photographs
     bool integrable;                       // refine_lights with its `integrable`
 
     // Corrections
@@ -58,8 +58,8 @@ struct relume_acquire_params {
     // A photograph of a ColorChecker 24 whose colours are made right; "auto": the target stands in
     // the photographs. Not with `white`.
     const char *target;
-    const double (*target_corner)[2];  // [4] as relume_chart_params; default: found
-    const char *target_values;         // a file for relume_chart_reference_load
+    const double (*target_corner)[2];  // [4] pixels of its corners, in order; default: found
+    const char *target_values;         // a file of its measured patches (docs/colour-target.md)
     // Photographs of an even surface, which the others are divided by: one against vignetting, or
     // one under each light.
     const char *const *flats;  // [flat_count]

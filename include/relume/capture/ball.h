@@ -22,7 +22,7 @@ struct relume_ball {
     double half_angle_rad;    // perspective: of the cone that touches the ball; else 0
 };
 
-// What of a ball was seen. Constant names by relume_ball_finding_text.
+// The highlight that was seen on a ball.
 enum relume_ball_finding {
     RELUME_BALL_SEEN = 0,
     RELUME_BALL_DARK,  // no highlight: no light reaches the ball, or the photograph is black

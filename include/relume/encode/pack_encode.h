@@ -11,8 +11,8 @@
 extern "C" {
 #endif
 
-// Encode every view of `capture` by `coder` and write the file `path`: relume_encode and
-// relume_pack_write in one call, temporary data beside `path`'s folder. `report` may be NULL.
+// Encodes every view of `capture` by `coder` and writes the file `path`; temporary data lie in its
+// folder. `report` may be NULL.
 struct relume_pack_encode_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -46,7 +46,7 @@ struct relume_pack_encode_params {
     struct relume_transfer display;  // as relume_encode_params
     bool shadows;  // learn what shadows are traced with (shadow.h). Of captures with depth and
                    // distant lights; not in parts or with reduced levels
-    const struct relume_image *gloss;  // what highlights wander by (relume_gloss_learn), of the
+    const struct relume_image *gloss;  // the model of moving highlights, of the
                                        // only view; likewise, and without `shadows`. Default: none
 };
 #define relume_pack_encode_params(...)                                                             \
@@ -63,7 +63,7 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
 // best in its bytes_per_pixel: principal components, or where shadows are hard the captured images
 // themselves (`table`), as tried on one view. `coder` may fix the interpolant, and the number of
 // components: then it is these. It works in the display domain, which is what to encode in. Errors
-// of relume_coder_decide and relume_encode.
+// of relume_coder_learn and relume_pack_encode.
 RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
                                                const struct relume_coder_params *coder,
                                                const struct relume_pack_encode_params *encode);

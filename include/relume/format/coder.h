@@ -221,10 +221,10 @@ struct relume_encode_params {
     enum relume_step step;        // default: a step per plane
     int threads;                  // default: all cores
     const char *scratch;          // temporary data goes beside this path; default: $TMPDIR
-    const struct relume_team *team;  // relume_samples_read and what learns: each member reads its
-                                     // part of the samples; default: alone
+    const struct relume_team *team;  // of what learns: each member reads its part of the samples;
+                                     // default: alone
     struct relume_transfer display;  // the curve of DOMAIN_DISPLAY, as RELUME_CURVE_LOG for high
-                                     // dynamic range; default: relume_encode_display
+                                     // dynamic range; default: the transfer of the capture
 };
 #define relume_encode_params(...)                                                                  \
     (&(const struct relume_encode_params){RELUME_SIZED(relume_encode_params), __VA_ARGS__})
@@ -235,7 +235,7 @@ RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture
 
 // Prepare `basis` for the lights of `capture`: relume_coder_create with its directions, hemisphere
 // and pole, and with samples where they are needed. Errors of both, and of
-// relume_samples_read.
+// reading samples.
 RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
                                                const relume_capture *capture,
                                                const struct relume_coder_params *coder,

@@ -5,8 +5,8 @@
 // of that, and gets everybody's. What follows from the pieces does not depend on how many there
 // are: N members write what one process writes, byte for byte.
 //
-// relume_team_folder is a team by files alone: members may run one after another, on any machines
-// that see the folder, and be stopped at any time. relume-mpi is one in memory.
+// `relume encode --learnt FOLDER` is a team by files alone: members may run one after another, on
+// any machines that see the folder, and be stopped at any time. relume-mpi is one in memory.
 #ifndef RELUME_TEAM_H
 #define RELUME_TEAM_H
 

@@ -18,8 +18,8 @@ extern "C" {
 typedef struct relume_slab_set relume_slab_set;
 
 // View i of `views` stands at uv[i] of slab[slab_of[i]]; `slab_of` may be NULL for one slab.
-// RELUME_EINVAL when a pose is no rotation or the cameras of a slab are no grid
-// (relume_slab_create); RELUME_ENOMEM.
+// RELUME_EINVAL when a pose is no rotation or the cameras of a slab are no grid;
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_set_create(relume_slab_set **out,
                                                    const struct relume_geometry *slab, int slabs,
                                                    const double (*uv)[2], const int *slab_of,

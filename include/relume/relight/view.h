@@ -25,16 +25,16 @@ struct relume_view_params {
     enum relume_filter filter;  // panoramas; slabs: NEAREST is as `one`, all else linear
     bool one;                   // one ray a pixel, for what has no mean, as positions
     enum relume_interpolation interpolation;
-    // By view number, as relume_slab_disparity makes them, read where views are. NULL: not known.
+    // Disparities by view number, read where views are. NULL: not known.
     const struct relume_image *disparity;
-    const double (*range)[2];  // of these (relume_slab_range), where they are; default: looked for
+    const double (*range)[2];  // least and largest of these; default: looked for
     // Synthetic aperture: its diameter on the uv plane, world units, and how far the plane in focus
     // lies from the st plane (z minus st_z). With either of them not 0 all cameras within the
     // aperture are averaged in linear light, whatever `interpolation` says. Default: a pinhole, the
     // st plane in focus.
     double aperture, focus;
     // Where images (and disparities, whose `range` is then given) are parts of their views: which,
-    // by view number, of width x height. Only of relume_slab_frame without an aperture or a focus.
+    // by view number, of width x height. Slabs without an aperture or a focus only.
     // Default: they are whole.
     const struct relume_rect *part;
     int size[2];    // width and height of the views that `part` lies in

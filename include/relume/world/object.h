@@ -7,7 +7,7 @@
 // of the objects lies between: shadows are hard, there is no light from object to object. Pixels
 // that cover many texels show means of them: levels of detail of the model, where it has such.
 //
-// Under an environment a material shows what relume_btf_environment says, times the share of the
+// Under an environment a material shows its values under all directions, times the share of the
 // light that reaches the point, in each colour: of 64 light samples drawn from the environment,
 // each times n.l, what nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire
 // 2018).
@@ -137,8 +137,8 @@ struct relume_objects_info {
 // It belongs to the objects.
 RELUME_API const struct relume_objects_info *relume_objects_info(const relume_objects *objects);
 
-// The edits of a file (docs/reflections.md), which replace those of the objects that it names: all
-// or, with an input status and a sentence or errors of relume_reflection_create, none.
+// Reads the edits of a file (docs/reflections.md). They replace those of the objects that it names.
+// Where reading fails, with an input status and a message, no edit is replaced.
 RELUME_RESULT relume_status relume_objects_load_reflections(
     relume_objects *objects, const char *path, const struct relume_reflection_params *params);
 
@@ -180,7 +180,7 @@ struct relume_render_params {
     (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})
 
 // The window through which `eye` sees all of the objects (`look_at`: all zero is their middle, +y
-// up and the least square view that holds them). False as relume_slab_set_window.
+// up and the least square view that holds them). False where there is none.
 RELUME_API bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
                                       struct relume_vec3 eye, const struct relume_look_at *look_at,
                                       int width, int height);

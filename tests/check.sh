@@ -67,7 +67,7 @@ tests >"$logs/list"
 while read -r t; do printf '%s\n%s\n' "$t" "$(log_of "$t")"; done <"$logs/list" |
     xargs -n 2 -P "$(($(nproc) + 1))" sh -c \
         'a=$(date +%s)
-        run() { timeout "${TEST_LIMIT_S:-300}" "$0" >"$1" 2>&1; echo $? >"$1.status"; }
+        run() { timeout "${TEST_LIMIT_S:-600}" "$0" >"$1" 2>&1; echo $? >"$1.status"; }
         run "$1"
         grep -q "^Tracer caught signal" "$1" && run "$1"
         echo $(($(date +%s) - a)) >"$1.seconds"

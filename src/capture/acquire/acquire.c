@@ -493,7 +493,7 @@ relume_status relume_capture_photographs(const char *dir, const char *const *pho
                                          const struct relume_acquire_params *params,
                                          struct relume_acquisition *report)
 {
-    struct relume_acquisition unread, *out = report ? report : &unread;
+    struct relume_acquisition unread = {0}, *out = report ? report : &unread;
     struct acquisition s = {.p = PARAMS_WORK(relume_acquire_params, params), .out = out};
     *out = (struct relume_acquisition){0};
     relume_status status = check_params(&s.p);

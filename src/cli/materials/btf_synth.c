@@ -266,23 +266,24 @@ static double period(double base, int side)
 // Says the structure, or with `w` writes it as members of an object.
 static void say_structure(const struct job *j, struct jwriter *w)
 {
-    const struct relume_regular_info *i = j->regular ? relume_regular_info(j->regular) : NULL;
-    const bool regular = i && i->regular;
+    static const struct relume_regular_info none;
+    const struct relume_regular_info *i = j->regular ? relume_regular_info(j->regular) : &none;
+    const bool regular = i->regular;
     const double x = regular ? period(i->base[0], j->texture.width) : 0.0,
                  y = regular ? period(i->base[1], j->texture.height) : 0.0;
     if (w) {
         jput_truth(w, "regular", regular);
         jput_integer(w, "waves", regular ? i->count : 0);
-        jput_integer(w, "waves_found", i ? i->found : 0);
+        jput_integer(w, "waves_found", i->found);
         jput_fixed(w, "share", regular ? i->share : 0.0, 4);
         jput_truth(w, "common", regular && i->common);
         jopen_array(w, "period");
         jput_fixed(w, NULL, x, 4);
         jput_fixed(w, NULL, y, 4);
         jclose(w);
-        jput_fixed(w, "rms_found", i ? i->rms_found : 0.0, 4);
-        jput_fixed(w, "rms_fitted", i ? i->rms_fitted : 0.0, 4);
-        jput_fixed(w, "rms", i ? i->rms : 0.0, 4);
+        jput_fixed(w, "rms_found", i->rms_found, 4);
+        jput_fixed(w, "rms_fitted", i->rms_fitted, 4);
+        jput_fixed(w, "rms", i->rms, 4);
     } else if (!regular) {
         puts("structure   none that repeats");
     } else if (!i->common) {

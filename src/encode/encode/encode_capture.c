@@ -306,7 +306,9 @@ relume_status relume_encode_capture(const char *path, const relume_capture *capt
     if (!status)
         status = p.jnd > 0.0 ? jnd_search(path, capture, &own, &p, encode_once)
                              : encode_once(path, capture, 0.0, &own, &p);
+    if (status)
+        own = (struct relume_encode_result){0};
     if (result)
-        *result = status ? (struct relume_encode_result){0} : own;
+        *result = own;
     return status;
 }

@@ -11,8 +11,9 @@ void text_put(struct jwriter *w, const char *key, const char *text)
     char *copy = text ? mem_text(text) : NULL;
     if (text && !copy)
         jfail(w, RELUME_ENOMEM);
-    for (char *at = copy; at && *(at += strcspn(at, "\n\t"));)
-        *at = ' ';
+    for (size_t i = 0; copy && copy[i]; i++)
+        if (copy[i] == '\n' || copy[i] == '\t')
+            copy[i] = ' ';
     jput_text(w, key, copy ? relume_printable(copy) : NULL);
     mem_free(copy);
 }

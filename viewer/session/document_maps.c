@@ -50,7 +50,7 @@ static relume_status add_light(struct relume_image *sum, const struct edited_map
 static relume_status paint_maps(struct relume_image *out, void *user,
                                 const struct relume_light *lights, int n)
 {
-    enum { OF_SKY = 48 };  // directional lights that stand for an environment
+    enum { OF_SKY = 48 };  // directional lights instead of an environment map
     const struct edited_maps *m = user;
     struct relume_light sky[OF_SKY];
     relume_status status = relume_image_create(out, m->maps.width, m->maps.height, 3);

@@ -213,7 +213,9 @@ def check(tree):
 
 def compare(totals, ceiling):
     allowed = dict(line.rsplit(" ", 1) for line in read(ceiling).splitlines())
-    worse = [n for n, total in sorted(totals.items()) if total > int(allowed.get(n, 0))]
+    # Subjects are listed only: commits cannot be mended, and the tree must not fail by its history.
+    worse = [n for n, total in sorted(totals.items())
+             if total > int(allowed.get(n, 0)) and not n.startswith("subject-")]
     print("".join("words: %s: %d findings, at most %s are allowed; scripts/words.py --rule '%s' lists them\n" %
                   (n, totals[n], allowed.get(n, 0), n) for n in worse), end="")
     return 1 if worse else 0

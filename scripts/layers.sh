@@ -254,6 +254,10 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
     }
     END { exit bad }'
 
+# A core header includes core headers only: the core is read without the extensions.
+cores="$(echo "$wings" | sed 's/^[^:]*://' | tr ' ' '\n' | sed '/^$/d; s|.*|include/relume/&.h|')"
+! grep -HE '^#include <relume/.*/' $cores | sed 's/^/layers: /; s/:#include/ includes/; s/$/, an extension/' | grep . >&2 || exit 1
+
 # What draws gets a frame_request, which holds what to show, and does not see the state that events change.
 drawn=$(grep -rlE 'struct app\b[^_]' viewer/gl viewer/relit viewer/glare viewer/draw || true)
 [ -z "$drawn" ] || {

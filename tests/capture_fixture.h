@@ -120,7 +120,7 @@ static inline relume_status fixture_encode_with(const char *folder, const char *
                                                 const struct relume_coder_params *how,
                                                 const struct relume_pack_encode_params *params)
 {
-    const struct relume_encode_params learn = {.threads = params ? params->threads : 0};
+    const struct relume_project_params learn = {.threads = params ? params->threads : 0};
     relume_capture *capture = NULL;
     relume_coder *coder = NULL;
     relume_status status =

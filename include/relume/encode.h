@@ -13,9 +13,6 @@
 #include <relume/base.h>
 #include <relume/capture.h>
 #include <relume/context.h>
-#include <relume/format/codebook.h>
-#include <relume/format/coder.h>
-#include <relume/format/team.h>
 #include <relume/pack.h>
 
 #ifdef __cplusplus
@@ -52,7 +49,7 @@ struct relume_encode_capture_params {
     double ridge;                                  // as relume_coder_params, 0 to 1
     bool no_ridge;                                 // as relume_coder_params
     enum relume_domain domain;       // default with auto: by the error; other bases: by the capture
-    struct relume_transfer display;  // the curve of DOMAIN_DISPLAY, as relume_encode_params
+    struct relume_transfer display;  // the curve of DOMAIN_DISPLAY, as relume_project_params
     // Traced through the depth. Default with auto: MOVING_AUTO for lossless files and from
     // bytes_per_pixel 1 on. Other bases: NO.
     enum relume_moving shadows;
@@ -146,10 +143,10 @@ struct relume_encode_result {
     bool joint;
     int lights, views;
     enum relume_domain domain;
-    struct relume_transfer display;        // the curve of DOMAIN_DISPLAY
-    enum relume_storage storage;           // without loss
-    bool lossy;                            // coded with loss
-    struct relume_encode_report measured;  // over all views
+    struct relume_transfer display;   // the curve of DOMAIN_DISPLAY
+    enum relume_storage storage;      // without loss
+    bool lossy;                       // coded with loss
+    struct relume_fidelity measured;  // over all views
     double unseen_db;   // predicted PSNR of light directions that were not captured; 0: unknown
     double quality_db;  // that was asked for, or the default of basis auto; 0: none
     enum relume_reach reach;  // of it, bytes_per_pixel or jnd

@@ -4,7 +4,6 @@
 
 #include <relume/base.h>
 #include <relume/context.h>
-#include <relume/format/coder.h>
 #include <relume/pack.h>
 
 #ifdef __cplusplus

@@ -5,15 +5,52 @@
 #include <relume/base.h>
 #include <relume/capture.h>
 #include <relume/image.h>
+#include <relume/light.h>
 #include <relume/pack.h>
-#include <relume/relight/enhance.h>
-#include <relume/relight/relight.h>
-#include <relume/relight/slab_set.h>
-#include <relume/relight/view.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+// How a slab's cameras become one ray.
+enum relume_interpolation {
+    RELUME_INTERPOLATE_DEFAULT = 0,  // by depth where disparities are given, else linear
+    RELUME_INTERPOLATE_CONSTANT,     // the nearest camera
+    RELUME_INTERPOLATE_LINEAR,       // quadralinear: four cameras, all looking at the st plane
+    RELUME_INTERPOLATE_DEPTH,        // four cameras, each where it sees the surface of the ray
+};
+
+// What a frame shows of a surface.
+enum relume_pass {
+    RELUME_PASS_COLOUR = 0,
+    RELUME_PASS_NORMALS,       // the unit vectors themselves, -1 to 1
+    RELUME_PASS_SPECULAR,      // specular enhancement (Malzbender et al. 2001, 4.2)
+    RELUME_PASS_DIFFUSE_GAIN,  // the same, 4.1
+    RELUME_PASS_UNSHARP,       // shading by normals whose detail is exaggerated
+    RELUME_PASS_LUMINANCE,     // Rec. 709
+    RELUME_PASS_FALSE_COLOUR,  // luminance from dark blue (`low`) to yellow (`top`); 0 is black
+    RELUME_PASS_DIFFERENCE,    // absolute, from `reference`
+    RELUME_PASSES
+};
+
+// Where an eye looks. All zero: at the middle of the object, +y up, through a window as large as
+// the largest st window; for an eye straight before a slab it is that slab's window.
+struct relume_look_at {
+    bool aimed;             // at `at`; else at the middle
+    struct relume_vec3 at;  // world
+    struct relume_vec3 up;  // zero: +y, for an eye straight above or below -z or +z
+    // horizontal, below 180, with square pixels; 0: the window above
+    double field_of_view_deg;
+};
+
+// Angles in degrees: pan > 0 turns right (-z towards +x), tilt > 0 looks up; tilt is applied
+// first, then pan. The horizontal field of view is 2 atan(1 / zoom), of a stereographic look twice
+// that: it shows up to nearly everything, circles stay circles, and tilted by -90 it is a little
+// planet.
+struct relume_pan_tilt {
+    double pan_deg, tilt_deg, zoom;  // zoom 0 means 1
+    bool stereographic;              // instead of perspective
+};
 
 // Which picture of a file a camera makes.
 enum relume_framing {

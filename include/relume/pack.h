@@ -5,13 +5,60 @@
 #include <relume/base.h>
 #include <relume/capture.h>
 #include <relume/context.h>
-#include <relume/format/codebook.h>
-#include <relume/format/coder.h>
 #include <relume/image.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+// A basis prepared for one set of lights. Never changes. Thread-safety: safe.
+typedef struct relume_coder relume_coder;
+
+// The stored coefficients of a view in memory (relume/format/coder.h).
+struct relume_codes;
+
+// In which light the coefficients live (architecture: "Domain").
+enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
+
+// In memory codes of 8 bits are uint8_t, floats float, all others 16-bit words. `log` is a way of
+// encoding: half floats rounded to 8 significant bits, even steps of brightness that compress
+// better; what is stored is `half`.
+enum relume_storage {
+    RELUME_STORE_DEFAULT = 0,
+    RELUME_STORE_8,
+    RELUME_STORE_16,
+    RELUME_STORE_HALF,
+    RELUME_STORE_10,
+    RELUME_STORE_12,
+    RELUME_STORE_FLOAT,
+    RELUME_STORE_LOG,
+};
+
+// The quantiser's step: every plane's own range over all codes, or one step for all planes, which
+// is the rate-distortion optimum where the functions are orthonormal.
+enum relume_step { RELUME_STEP_DEFAULT = 0, RELUME_STEP_PLANE, RELUME_STEP_COMMON };
+
+// Pixels of a view that carry little or no information; those outside the mask do not count.
+struct relume_census {
+    size_t pixels;
+    size_t black;           // exactly 0 under every light
+    size_t clipped;         // as bright as the files can say, in a colour, under some light
+    size_t always_clipped;  // in the same colour under every light
+    size_t repaired;        // pixels of images that held NaN or infinity, masked ones too
+    int black_images;       // lights under which nothing is seen
+};
+
+// How well a view was encoded, in the coefficients' own domain over the captured lights, in units
+// where 1 is white; measured on two rows of 16 or 64.
+struct relume_fidelity {
+    double fit_rms;    // captured samples against unquantised coefficients
+    double store_rms;  // unquantised against stored coefficients
+    double steps_rms;  // the same before a codebook; 0 from a file
+    double psnr_db;    // of display values, as `relume eval` measures it, with a codebook what that
+                       // leaves; 0 from a file
+    double typical;    // captured sample above 0: squared mean of the roots; 0 from a file
+    struct relume_census census;  // zeros where it is read from a file
+};
 
 // How EXR packs the codes, always without loss.
 enum relume_compression {
@@ -82,7 +129,7 @@ struct relume_pack_info {
     int books;                 // codebooks for each pixel, 0: planes
     int codes;                 // vectors of the first book
     bool shared;               // all views have the same codebooks
-    struct relume_encode_report report;  // NaN where the file does not say
+    struct relume_fidelity report;  // NaN where the file does not say
     uint64_t file_bytes;
     bool has_shadow;  // shadows can be traced: relume_pack_shadow
     bool has_gloss;   // highlights wander: relume_pack_gloss

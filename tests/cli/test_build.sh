@@ -133,8 +133,9 @@ plant "a private header of the tool in the viewer" viewer/app/app.c '#include "c
 plant "a header of a room above" viewer/gl/gl.c '#include "draw/draw.h"' draw/draw.h
 plant "a private header in a sample" samples/minimal.c '#include "core/base/log.h"' core/base/log.h
 plant "a public header from above" src/format/coder/fit.c '#include <relume/frame.h>' '<relume/frame.h>'
+plant "an extension in a core header" include/relume/pack.h '#include <relume/format/coder.h>' '<relume/format/coder.h>, an extension'
 plant "an external library out of place" src/format/pack/reader.c '#include <openexr.h>' '<openexr'
-plant "linear algebra out of place" src/format/coder/encode.c '#include <Eigen/Dense>' '<Eigen'
+plant "linear algebra out of place" src/format/coder/project.c '#include <Eigen/Dense>' '<Eigen'
 plant "intrinsics out of place" src/relight/light/relight.c '#include <immintrin.h>' '<immintrin'
 cp tree/src/core/base/tree.h before
 echo '#include "core/math/hull.h"' >>tree/src/core/base/tree.h

@@ -49,7 +49,7 @@ static void join(const char *const *parts, int count)
 {
     struct relume_buffer file = {0};
     const struct relume_writer writer = relume_buffer_writer(&file);
-    struct relume_encode_report report;
+    struct relume_fidelity report;
     if (!relume_pack_join(parts, count, NULL, &report,
                           relume_pack_params(.limits = &limits, .threads = 1, .writer = &writer)) &&
         !file.size)

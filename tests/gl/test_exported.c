@@ -31,7 +31,7 @@ static int setup(void **state)
         relume_capture_open(&capture, folder, NULL) ||
         relume_coder_learn(&coder, &relume_basis_eigen, capture,
                            relume_coder_params(.coefficients = TERMS),
-                           relume_encode_params(.domain = domain, .display = display)) ||
+                           relume_project_params(.domain = domain, .display = display)) ||
         relume_pack_encode(capture, coder, pack_path, NULL,
                            relume_pack_encode_params(.domain = domain, .display = display,
                                                      .storage = RELUME_STORE_HALF)) ||

@@ -252,7 +252,7 @@ static void test_eight_bits_are_enough(void **state)
                 continue;  // the table has no residual of its own
             relume_capture *capture;
             relume_coder *coder;
-            struct relume_encode_report r;
+            struct relume_fidelity r;
             CHECK_OK(relume_capture_open(&capture, folder, NULL));
             CHECK_OK(relume_coder_learn(&coder, *b, capture,
                                         relume_coder_params(.coefficients = (*b)->fit_count(9, 60)),

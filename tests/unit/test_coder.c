@@ -263,7 +263,7 @@ static void test_some_pixels_of_everywhere(void **state)
     relume_capture *capture = open_capture();
     struct relume_samples s, again;
     int per_view[2] = {0}, upper = 0;
-    CHECK_OK(relume_samples_read(&s, capture, 200, relume_encode_params(.threads = 1)));
+    CHECK_OK(relume_samples_read(&s, capture, 200, relume_project_params(.threads = 1)));
     assert_true(s.pixels > 130 && s.pixels <= 200);
     for (size_t x = 0; x < s.pixels; x++) {
         int view, at;
@@ -273,7 +273,7 @@ static void test_some_pixels_of_everywhere(void **state)
     }
     assert_true(per_view[0] > 60 && per_view[1] > 60);
     assert_true(abs(2 * upper - (int)s.pixels) < 20);
-    CHECK_OK(relume_samples_read(&again, capture, 200, relume_encode_params(.threads = 7)));
+    CHECK_OK(relume_samples_read(&again, capture, 200, relume_project_params(.threads = 7)));
     assert_int_equal(again.pixels, s.pixels);
     assert_memory_equal(again.data, s.data, sizeof(float) * 3 * s.pixels * (size_t)s.lights);
     relume_samples_destroy(&again);
@@ -289,7 +289,7 @@ static void test_samples_of_the_display_domain(void **state)
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     CHECK_OK(relume_samples_read(&linear, capture, 100, NULL));
     CHECK_OK(relume_samples_read(&display, capture, 100,
-                                 relume_encode_params(.domain = RELUME_DOMAIN_DISPLAY)));
+                                 relume_project_params(.domain = RELUME_DOMAIN_DISPLAY)));
     assert_int_equal(display.pixels, linear.pixels);
     for (size_t i = 0; i < 3 * linear.pixels * (size_t)linear.lights; i++)
         CHECK_NEAR((double)display.data[i], (double)relume_transfer_encode(srgb, linear.data[i]),
@@ -347,7 +347,7 @@ static void test_census(void **state)
     for (int round = 0; round < 4; round++) {
         relume_capture *capture;
         relume_coder *coder;
-        struct relume_encode_report r;
+        struct relume_fidelity r;
         m.intensities = round % 2 ? intensities : NULL;
         snprintf(path, sizeof path, "%s/capture.json", folder);
         CHECK_OK(relume_manifest_write(&m, path, NULL));

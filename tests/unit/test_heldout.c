@@ -86,7 +86,7 @@ static struct relume_heldout_quality by_files(const relume_capture *capture, con
         CHECK_OK(relume_coder_learn(
             &coder, c->basis, part,
             relume_coder_params(.coefficients = c->coefficients, .choose = c->choose),
-            relume_encode_params(.domain = c->domain, .display = c->display)));
+            relume_project_params(.domain = c->domain, .display = c->display)));
         CHECK_OK(relume_pack_encode(
             part, coder, pack_path, NULL,
             relume_pack_encode_params(.domain = c->domain, .display = c->display,

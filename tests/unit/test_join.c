@@ -24,8 +24,7 @@ static void darken(void)
     }
 }
 
-static void encode_part(const char *name, int part, bool together,
-                        struct relume_encode_report *report)
+static void encode_part(const char *name, int part, bool together, struct relume_fidelity *report)
 {
     relume_team_files *files = NULL;
     relume_capture *capture;
@@ -48,7 +47,7 @@ static void encode_part(const char *name, int part, bool together,
 static void check_census(bool together)
 {
     static const char *const name[PARTS] = {"1.part", "2.part", "3.part"};
-    struct relume_encode_report whole, joined, own;
+    struct relume_fidelity whole, joined, own;
     encode_part("whole.exr", 0, false, &whole);
     for (int i = 0; i < PARTS; i++)
         encode_part(name[i], i + 1, together, &own);

@@ -53,7 +53,7 @@ static relume_coder *make_coder(const relume_capture *capture, const struct relu
     CHECK_OK(relume_coder_learn(
         &coder, basis, capture,
         relume_coder_params(.coefficients = coefficients, .luminance = luminance),
-        relume_encode_params(.domain = RELUME_DOMAIN_LINEAR)));
+        relume_project_params(.domain = RELUME_DOMAIN_LINEAR)));
     return coder;
 }
 

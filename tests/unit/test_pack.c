@@ -217,8 +217,8 @@ static void test_own_preview(void **state)
                                            .plane = planes,
                                            .scale = (float[]){1, 1, 1},
                                            .offset = (float[]){0, 0, 0}};
-        CHECK_OK(
-            relume_coefficients_keep(&coefficients, &codes, relume_encode_params(.scratch = path)));
+        CHECK_OK(relume_coefficients_keep(&coefficients, &codes,
+                                          relume_project_params(.scratch = path)));
         const struct relume_pack_view view = {.coefficients = coefficients};
         struct relume_pack_contents contents = {
             .coder = coder,

@@ -262,8 +262,8 @@ static void wrong_files_are_refused(void **state)
     CHECK_OK(relume_coder_learn(&coder, &relume_basis_sh, capture,
                                 relume_coder_params(.coefficients = 4), NULL));
     for (int i = 0; i < VIEWS; i++)
-        CHECK_OK(relume_encode(&coefficients[i], coder, capture, i,
-                               relume_encode_params(.scratch = path)));
+        CHECK_OK(relume_project(&coefficients[i], coder, capture, i,
+                                relume_project_params(.scratch = path)));
     for (int how = 0; how <= WAYS; how++) {
         struct relume_geometry slab[RELUME_MOST_SLABS + 1];
         struct relume_pack_view view[VIEWS] = {{0}};

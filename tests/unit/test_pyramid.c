@@ -301,7 +301,7 @@ static long mapped_pages(void)
 static void test_large_masks_are_not_in_memory(void **state)
 {
     (void)state;
-    const struct relume_encode_params p = {.scratch = path};
+    const struct relume_project_params p = {.scratch = path};
     const int width = 4203, height = 4001;
     struct relume_image mask, whole, half;
     CHECK_OK(image_create_large(&mask, width, height, 1, path, NULL));

@@ -738,7 +738,7 @@ static relume_status checked(const struct relume_image *model)
                                        .scale = (float[]){1, 1, 1},
                                        .offset = (float[]){0, 0, 0}};
     CHECK_OK(relume_coefficients_keep(&coefficients, &codes,
-                                      relume_encode_params(.scratch = path_of("scratch"))));
+                                      relume_project_params(.scratch = path_of("scratch"))));
     const struct relume_pack_view view = {
         .coefficients = coefficients, .depth = &depth, .shadow = model};
     const struct relume_pack_contents contents = {

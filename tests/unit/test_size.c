@@ -35,7 +35,7 @@ struct coded_slab {
     relume_capture *capture;
     relume_coder *coder;
     struct relume_pack_encode_params p;
-    struct relume_encode_params encode;
+    struct relume_project_params encode;
     struct material m;
     struct view_groups groups;
 };
@@ -50,7 +50,7 @@ static void open_slab(struct coded_slab *s)
     CHECK_OK(relume_coder_learn(&s->coder, &relume_basis_pca, s->capture,
                                 &(const struct relume_coder_params){.coefficients = 5}, NULL));
     s->p = (struct relume_pack_encode_params){.bytes_per_pixel = 1.0};
-    s->encode = (struct relume_encode_params){
+    s->encode = (struct relume_project_params){
         .domain = RELUME_DOMAIN_DISPLAY, .storage = RELUME_STORE_12, .step = RELUME_STEP_COMMON};
     s->m = (struct material){
         .capture = s->capture, .coder = s->coder, .p = &s->p, .encode = &s->encode};

@@ -28,7 +28,7 @@ static void add_noise(float size)
 
 static void compare(double left_out[2], double clearly)
 {
-    const struct relume_encode_params encode = {
+    const struct relume_project_params encode = {
         .domain = RELUME_DOMAIN_DISPLAY, .storage = RELUME_STORE_12, .step = RELUME_STEP_COMMON};
     const struct rate_target target = {.psnr_db = 38.0};
     const double header[2] = {0.0, 0.0};

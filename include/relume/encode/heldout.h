@@ -24,11 +24,11 @@ struct relume_heldout_params {
     const relume_capture *test;  // judge by these lights, none left out; same size, views and
                                  // projection; or NULL
     int leave_out;               // lights left out at a time, default 1
-    enum relume_domain domain;   // as relume_encode_params
+    enum relume_domain domain;   // as relume_project_params
     uint64_t memory;             // bytes for samples, default 2^30; a capture that needs more is
                                  // represented by bands of rows, spread evenly
     int threads;                 // default: all cores
-    struct relume_transfer display;  // as relume_encode_params
+    struct relume_transfer display;  // as relume_project_params
     bool tone_mapped;                // what is compared: each picture at an exposure of its own
                                      // (relume_tone_meter of the photograph), with a gamma of 2.2
 };

@@ -5,6 +5,8 @@
 #ifndef RELUME_PACK_ENCODE_H
 #define RELUME_PACK_ENCODE_H
 
+#include <relume/format/codebook.h>
+#include <relume/format/coder.h>
 #include <relume/format/pack_write.h>
 
 #ifdef __cplusplus
@@ -43,7 +45,7 @@ struct relume_pack_encode_params {
     const struct relume_team *team;  // the other parts (team.h): `part` is its member; default:
                                      // nothing is shared with them
     bool learn_only;                 // share what the team needs for its steps, and write nothing
-    struct relume_transfer display;  // as relume_encode_params
+    struct relume_transfer display;  // as relume_project_params
     bool shadows;  // learn what shadows are traced with (shadow.h). Of captures with depth and
                    // distant lights; not in parts or with reduced levels
     const struct relume_image *gloss;  // the model of moving highlights, of the
@@ -56,7 +58,7 @@ struct relume_pack_encode_params {
 // RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
                                                const relume_coder *coder, const char *path,
-                                               struct relume_encode_report *report,
+                                               struct relume_fidelity *report,
                                                const struct relume_pack_encode_params *params);
 
 // The coder that needs the fewest bytes for `encode`'s psnr_db, or reproduces the captured lights
@@ -72,7 +74,7 @@ RELUME_RESULT relume_status relume_pack_decide(relume_coder **out, const relume_
 // an input status when one is damaged; RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. `report` may be
 // NULL. Of `params` log, limits, threads and writer are used.
 RELUME_RESULT relume_status relume_pack_join(const char *const *parts, int count, const char *path,
-                                             struct relume_encode_report *report,
+                                             struct relume_fidelity *report,
                                              const struct relume_pack_params *params);
 
 #ifdef __cplusplus

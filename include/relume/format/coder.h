@@ -9,6 +9,7 @@
 #include <relume/base.h>
 #include <relume/capture.h>
 #include <relume/image.h>
+#include <relume/pack.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -17,9 +18,6 @@ extern "C" {
 // No basis has more coefficients per channel than this: three times as many are the weights of a
 // direction, and at most the planes of a view.
 enum { RELUME_MOST_COEFFICIENTS = 4096 };
-
-// A basis prepared for one set of lights. Never changes. Thread-safety: safe.
-typedef struct relume_coder relume_coder;
 
 // A family of basis functions. Constant; a NULL-terminated list of all is relume_bases.
 struct relume_basis {
@@ -171,8 +169,6 @@ RELUME_RESULT relume_status relume_coder_apply(const relume_coder *coder, const 
                                                size_t stride, size_t n, float *planes,
                                                size_t plane_stride);
 
-// In which light the coefficients live (architecture: "Domain").
-enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
 // The usual delta of RELUME_CURVE_LOG.
 #define RELUME_LOG_DELTA 1e-2f
 // "auto", "linear", "display"; "log" and "log:DELTA" are the display domain with that curve, which
@@ -183,19 +179,6 @@ RELUME_RESULT relume_status relume_domain_parse(enum relume_domain *out,
 RELUME_API const char *relume_domain_name(enum relume_domain domain,
                                           struct relume_transfer display);
 
-// In memory codes of 8 bits are uint8_t, floats float, all others 16-bit words. `log` is a way of
-// encoding: half floats rounded to 8 significant bits, even steps of brightness that compress
-// better; what is stored is `half`.
-enum relume_storage {
-    RELUME_STORE_DEFAULT = 0,
-    RELUME_STORE_8,
-    RELUME_STORE_16,
-    RELUME_STORE_HALF,
-    RELUME_STORE_10,
-    RELUME_STORE_12,
-    RELUME_STORE_FLOAT,
-    RELUME_STORE_LOG,
-};
 // "8", "10", "12", "16", "half", "float", "log".
 RELUME_API const char *relume_storage_name(enum relume_storage storage);
 // RELUME_EINVAL when `name` is none of these.
@@ -208,12 +191,8 @@ static inline size_t relume_storage_bytes(enum relume_storage storage)
     return storage == RELUME_STORE_8 ? 1 : storage == RELUME_STORE_FLOAT ? 4 : 2;
 }
 
-// The quantiser's step: every plane's own range over all codes, or one step for all planes, which
-// is the rate-distortion optimum where the functions are orthonormal.
-enum relume_step { RELUME_STEP_DEFAULT = 0, RELUME_STEP_PLANE, RELUME_STEP_COMMON };
-
 // How views are encoded. Borrowed during the call.
-struct relume_encode_params {
+struct relume_project_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     enum relume_domain domain;    // default: display for captures that are not linear, else linear
@@ -226,12 +205,12 @@ struct relume_encode_params {
     struct relume_transfer display;  // the curve of DOMAIN_DISPLAY, as RELUME_CURVE_LOG for high
                                      // dynamic range; default: the transfer of the capture
 };
-#define relume_encode_params(...)                                                                  \
-    (&(const struct relume_encode_params){RELUME_SIZED(relume_encode_params), __VA_ARGS__})
+#define relume_project_params(...)                                                                 \
+    (&(const struct relume_project_params){RELUME_SIZED(relume_project_params), __VA_ARGS__})
 
 // The domain that DOMAIN_AUTO means for `capture`.
-RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture,
-                                                   enum relume_domain domain);
+RELUME_API enum relume_domain relume_capture_domain(const relume_capture *capture,
+                                                    enum relume_domain domain);
 
 // Prepare `basis` for the lights of `capture`: relume_coder_create with its directions, hemisphere
 // and pole, and with samples where they are needed. Errors of both, and of
@@ -239,7 +218,7 @@ RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture
 RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
                                                const relume_capture *capture,
                                                const struct relume_coder_params *coder,
-                                               const struct relume_encode_params *encode);
+                                               const struct relume_project_params *encode);
 
 // What the capture itself asks for: `pca` and an interpolant as in `coder` (default: chosen), with
 // as many coefficients and in the domain in which samples of the captured lights are reproduced at
@@ -248,28 +227,6 @@ RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct 
 // than so many components. What the params fix -
 // coefficients, domain, storage - stays. Errors of relume_coder_learn.
 #define RELUME_USUAL_DB 38.0
-
-// Pixels of a view that carry little or no information; those outside the mask do not count.
-struct relume_encode_census {
-    size_t pixels;
-    size_t black;           // exactly 0 under every light
-    size_t clipped;         // as bright as the files can say, in a colour, under some light
-    size_t always_clipped;  // in the same colour under every light
-    size_t repaired;        // pixels of images that held NaN or infinity, masked ones too
-    int black_images;       // lights under which nothing is seen
-};
-
-// How well a view was encoded, in the coefficients' own domain over the captured lights, in units
-// where 1 is white; measured on two rows of 16 or 64.
-struct relume_encode_report {
-    double fit_rms;    // captured samples against unquantised coefficients
-    double store_rms;  // unquantised against stored coefficients
-    double steps_rms;  // the same before a codebook; 0 from a file
-    double psnr_db;    // of display values, as `relume eval` measures it, with a codebook what that
-                       // leaves; 0 from a file
-    double typical;    // captured sample above 0: squared mean of the roots; 0 from a file
-    struct relume_encode_census census;  // zeros where it is read from a file
-};
 
 // The stored coefficients of one view in memory, ready to be relit. Plain data, borrowed.
 struct relume_codes {

@@ -4,6 +4,7 @@
 #define RELUME_ENHANCE_H
 
 #include <relume/base.h>
+#include <relume/frame.h>
 #include <relume/image.h>
 #include <relume/light.h>
 #include <relume/relight/normals.h>
@@ -12,18 +13,6 @@
 extern "C" {
 #endif
 
-// What a frame shows of a surface.
-enum relume_pass {
-    RELUME_PASS_COLOUR = 0,
-    RELUME_PASS_NORMALS,       // the unit vectors themselves, -1 to 1
-    RELUME_PASS_SPECULAR,      // specular enhancement (Malzbender et al. 2001, 4.2)
-    RELUME_PASS_DIFFUSE_GAIN,  // the same, 4.1
-    RELUME_PASS_UNSHARP,       // shading by normals whose detail is exaggerated
-    RELUME_PASS_LUMINANCE,     // Rec. 709
-    RELUME_PASS_FALSE_COLOUR,  // luminance from dark blue (`low`) to yellow (`top`); 0 is black
-    RELUME_PASS_DIFFERENCE,    // absolute, from `reference`
-    RELUME_PASSES
-};
 // "colour", "normals", "specular", "diffuse-gain", "unsharp", "luminance", "false-colour",
 // "difference"; NULL when out of range.
 RELUME_API const char *relume_pass_name(enum relume_pass pass);

@@ -36,15 +36,6 @@ struct relume_window {
     struct relume_vec3 eye, corner, right, down;
 };
 
-// Where an eye looks. All zero: at the middle of the object, +y up, through a window as large as
-// the largest st window; for an eye straight before a slab it is that slab's window.
-struct relume_look_at {
-    bool aimed;             // at `at`; else at the middle
-    struct relume_vec3 at;  // world
-    struct relume_vec3 up;  // zero: +y, for an eye straight above or below -z or +z
-    // horizontal, below 180, with square pixels; 0: the window above
-    double field_of_view_deg;
-};
 // Whether anything is not zero.
 RELUME_API bool relume_look_at_given(const struct relume_look_at *look_at);
 

@@ -4,19 +4,12 @@
 
 #include <relume/base.h>
 #include <relume/capture.h>
+#include <relume/frame.h>
 #include <relume/image.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-// How a slab's cameras become one ray.
-enum relume_interpolation {
-    RELUME_INTERPOLATE_DEFAULT = 0,  // by depth where disparities are given, else linear
-    RELUME_INTERPOLATE_CONSTANT,     // the nearest camera
-    RELUME_INTERPOLATE_LINEAR,       // quadralinear: four cameras, all looking at the st plane
-    RELUME_INTERPOLATE_DEPTH,        // four cameras, each where it sees the surface of the ray
-};
 
 // All but the first three is of slabs.
 struct relume_view_params {
@@ -47,16 +40,6 @@ struct relume_view_params {
 };
 #define relume_view_params(...)                                                                    \
     (&(const struct relume_view_params){RELUME_SIZED(relume_view_params), __VA_ARGS__})
-
-// ------------------------------------------------------------------ panorama
-// Angles in degrees: pan > 0 turns right (-z towards +x), tilt > 0 looks up; tilt is applied
-// first, then pan. The horizontal field of view is 2 atan(1 / zoom), of a stereographic look twice
-// that: it shows up to nearly everything, circles stay circles, and tilted by -90 it is a little
-// planet.
-struct relume_pan_tilt {
-    double pan_deg, tilt_deg, zoom;  // zoom 0 means 1
-    bool stereographic;              // instead of perspective
-};
 
 // Unit direction through the (fractional) position (x, y) of a width x height frame; pixel centres
 // are at +0.5.

@@ -17,7 +17,7 @@ static const struct option options[] = {
 static relume_status run_join(const struct args *args)
 {
     const struct join_options *o = (const void *)args;
-    struct relume_encode_report report;
+    struct relume_fidelity report;
     struct kept_notes kept;
     kept_notes_read(&kept, o->output);
     const relume_status status = relume_pack_join(

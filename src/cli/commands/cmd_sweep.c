@@ -181,7 +181,7 @@ static relume_status make_rows(struct sweep *sweep, const relume_capture *captur
         bases.item[bases.count++] = i ? relume_bases[i - 1] : NULL;
     for (int d = 0; d < sweep->options->domains.count; d++) {
         sweep->domain = sweep->options->domains.item[d];
-        sweep->domain.domain = relume_encode_domain(capture, sweep->domain.domain);
+        sweep->domain.domain = relume_capture_domain(capture, sweep->domain.domain);
         const bool again = is_again(sweep);
         for (int b = 0; !again && b < bases.count; b++)
             possible |= add_sizes(sweep, bases.item[b]);
@@ -308,8 +308,8 @@ static relume_status learn(relume_coder **out, double *seconds, const struct swe
     const double start = now_s();
     const relume_status status = relume_coder_learn(
         out, row->basis, w->capture, &params,
-        relume_encode_params(.log = log, .domain = row->domain.domain,
-                             .display = row->domain.display, .threads = w->sweep->args->threads));
+        relume_project_params(.log = log, .domain = row->domain.domain,
+                              .display = row->domain.display, .threads = w->sweep->args->threads));
     *seconds = now_s() - start;
     return status;
 }

@@ -74,7 +74,7 @@ static void say_highlights(const struct args *args, const struct encoded_file *f
 // Pixels that say little: black and overexposed ones, black images.
 static void say_census(const struct args *args, const struct encoded_file *f)
 {
-    const struct relume_encode_census *c = &f->result->measured.census;
+    const struct relume_census *c = &f->result->measured.census;
     if (c->black)
         announce(args, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE,
                  "%s: %zu of %zu pixels are black under every light", f->input, c->black,

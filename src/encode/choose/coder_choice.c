@@ -48,7 +48,7 @@ struct choice {
     const relume_capture *capture;
     const struct relume_manifest *manifest;
     struct relume_coder_params params;
-    struct relume_encode_params encode;
+    struct relume_project_params encode;
     double quality;
     struct relume_samples all;   // in `domain`
     struct relume_samples some;  // of them
@@ -633,7 +633,8 @@ static relume_status consider_pictures(struct choice *choice, enum relume_storag
         return RELUME_OK;
     }
     relume_coder_destroy(&components);
-    if (!status && choice->domain != relume_encode_domain(choice->capture, choice->encode.domain)) {
+    if (!status &&
+        choice->domain != relume_capture_domain(choice->capture, choice->encode.domain)) {
         move_samples(choice, RELUME_DOMAIN_LINEAR);
         status = make_pictures(choice, &other, &theirs);
     }
@@ -644,13 +645,13 @@ static relume_status consider_pictures(struct choice *choice, enum relume_storag
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,
                                   const relume_capture *capture, double quality_db,
                                   const struct relume_coder_params *coder,
-                                  const struct relume_encode_params *encode)
+                                  const struct relume_project_params *encode)
 {
     struct choice choice = {
         .capture = capture,
         .manifest = relume_capture_manifest(capture),
         .params = coder ? *coder : (struct relume_coder_params){.choose = true},
-        .encode = PARAMS_WORK(relume_encode_params, encode),
+        .encode = PARAMS_WORK(relume_project_params, encode),
         .quality = quality_db > 0.0 ? quality_db : RELUME_USUAL_DB,
         .display = mem_array(1, sizeof *choice.display),
     };
@@ -658,7 +659,7 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
     choice.params.hemispherical = relume_capture_hemispherical(capture);
     choice.params.pole_y = relume_capture_pole_y(capture);
     choice.params.threads = choice.encode.threads;
-    choice.domain = relume_encode_domain(capture, choice.encode.domain);
+    choice.domain = relume_capture_domain(capture, choice.encode.domain);
     choice.curve = relume_encode_curve(capture, choice.encode.display);
     relume_status status = choice.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status)

@@ -562,8 +562,8 @@ static relume_status learn(relume_heldout *h, bool learned)
     if (!h->learning.data)
         status = relume_samples_read(
             &h->learning, h->capture, 0,
-            relume_encode_params(.log = h->params.log ? &quiet : NULL, .domain = h->info.domain,
-                                 .display = h->params.display, .threads = h->params.threads));
+            relume_project_params(.log = h->params.log ? &quiet : NULL, .domain = h->info.domain,
+                                  .display = h->params.display, .threads = h->params.threads));
     return status ? status : sample_sums_make(&h->sums, &h->learning, learned, h->params.threads);
 }
 
@@ -670,7 +670,7 @@ static relume_status describe(relume_heldout *h)
     h->hemispherical = relume_capture_hemispherical(h->capture);
     h->pole_y = relume_capture_pole_y(h->capture);
     h->screen = relume_encode_display(h->capture);
-    h->info.domain = relume_encode_domain(h->capture, h->params.domain);
+    h->info.domain = relume_capture_domain(h->capture, h->params.domain);
     h->curve = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
     if (h->info.domain != RELUME_DOMAIN_LINEAR)
         h->curve = relume_encode_curve(h->capture, h->params.display);

@@ -65,7 +65,7 @@ static relume_status keep_view(relume_coefficients **out, const relume_heldout *
     if (!status)
         status = coefficients_create(
             out, coder, h->width, rows,
-            relume_encode_params(.log = h->params.log, .storage = store->storage));
+            relume_project_params(.log = h->params.log, .storage = store->storage));
     for (int row = 0; !status && row < rows; row += BAND_ROWS)
         status = keep_band(*out, row, value + *first + (size_t)row * width, h->pixels, packed);
     mem_free(packed);

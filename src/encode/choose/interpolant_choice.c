@@ -122,7 +122,7 @@ static relume_status find_parameters(struct relume_coder_params *curved,
 }
 
 relume_status relume_coder_between(struct relume_coder_params *coder, const relume_capture *capture,
-                                   const struct relume_encode_params *encode)
+                                   const struct relume_project_params *encode)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
     struct relume_samples samples = {0};

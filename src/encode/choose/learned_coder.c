@@ -7,7 +7,7 @@
 relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
                                  const relume_capture *capture,
                                  const struct relume_coder_params *coder,
-                                 const struct relume_encode_params *encode)
+                                 const struct relume_project_params *encode)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
     struct relume_coder_params p = PARAMS_WORK(relume_coder_params, coder);

@@ -59,7 +59,7 @@ static void copy_band(struct view_reader *r, size_t n, size_t first)
 
 static relume_status sample_view(struct sampling *g, int view, size_t *place)
 {
-    const struct relume_encode_params *p = &g->p;
+    const struct relume_project_params *p = &g->p;
     const size_t width = (size_t)relume_capture_width(g->capture);
     const int height = relume_capture_height(g->capture);
     const int views = relume_capture_manifest(g->capture)->views;
@@ -157,19 +157,19 @@ static relume_status sample_pixels(struct sampling *g)
 }
 
 relume_status relume_samples_read(struct relume_samples *out, const relume_capture *capture,
-                                  size_t pixels, const struct relume_encode_params *params)
+                                  size_t pixels, const struct relume_project_params *params)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const size_t all = (size_t)m->views * (size_t)relume_capture_width(capture) *
                        (size_t)relume_capture_height(capture);
     const size_t want = pixels ? pixels : DEFAULT_PIXELS;
     struct sampling g = {.capture = capture,
-                         .p = PARAMS_WORK(relume_encode_params, params),
+                         .p = PARAMS_WORK(relume_project_params, params),
                          .display = {.curve = RELUME_CURVE_LINEAR},
                          .count = want < all ? want : all,
                          .out = out};
     *out = (struct relume_samples){.lights = m->lights};
-    if (relume_encode_domain(capture, g.p.domain) == RELUME_DOMAIN_DISPLAY)
+    if (relume_capture_domain(capture, g.p.domain) == RELUME_DOMAIN_DISPLAY)
         g.display = relume_encode_curve(capture, g.p.display);
     g.pixel = mem_array(g.count, sizeof *g.pixel);
     if (!g.pixel)

@@ -7,7 +7,7 @@
 
 struct sampling {
     const relume_capture *capture;
-    struct relume_encode_params p;
+    struct relume_project_params p;
     struct relume_transfer display;
     size_t *pixel;  // [count]: which are looked at, by number over all views, ascending
     size_t count;

@@ -58,7 +58,7 @@ static relume_status load_tiles(void *user, int group, struct group_share tiles)
     return coded_rows_load(&c->rows, group, tiles);
 }
 
-static relume_status find_words(struct coding *c, struct relume_encode_report *report)
+static relume_status find_words(struct coding *c, struct relume_fidelity *report)
 {
     struct material *m = c->m;
     const struct rate_team by = {c->team, load_tiles, c};
@@ -73,7 +73,7 @@ static relume_status find_words(struct coding *c, struct relume_encode_report *r
     if (status)
         return status;
     c->effort = result.effort;
-    *report = encode_report_mean(m->report, m->views);
+    *report = fidelity_mean(m->report, m->views);
     const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
     report->psnr_db = result.psnr_db;
     report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
@@ -90,8 +90,7 @@ static bool has_levels(const struct material *m)
            (m->p->pyramid || pyramid_is_possible(&contents));
 }
 
-relume_status encode_coded(struct material *m, const char *path,
-                           struct relume_encode_report *report)
+relume_status encode_coded(struct material *m, const char *path, struct relume_fidelity *report)
 {
     struct coding c = {.m = m, .team = m->p->team, .leveled = has_levels(m)};
     c.levels_by = mem_zeroed((size_t)m->views, sizeof *c.levels_by);

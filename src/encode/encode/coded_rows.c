@@ -63,16 +63,16 @@ static struct rows covered(const struct coded_rows *r, const struct lossy_cut *c
 }
 
 // The rows of tiles `first` .. `end` of a view, whether they are there or not.
-static relume_status encode_rows(struct coded_rows *r, const struct lossy_cut *cut, int view,
-                                 int first, int end)
+static relume_status project_rows(struct coded_rows *r, const struct lossy_cut *cut, int view,
+                                  int first, int end)
 {
     struct material *m = r->m;
     relume_coefficients **c = &m->coefficients[view];
     const struct rows rows = covered(r, cut, first, end);
     const bool begun = *c != NULL;
     const relume_status status =
-        begun ? encode_more_rows(*c, m->capture, view, rows.first, rows.count, m->encode)
-              : encode_some_rows(c, m->coder, m->capture, view, rows.first, rows.count, m->encode);
+        begun ? project_more_rows(*c, m->capture, view, rows.first, rows.count, m->encode)
+              : project_some_rows(c, m->coder, m->capture, view, rows.first, rows.count, m->encode);
     if (status)
         return status;
     if (!begun && r->settled)
@@ -90,7 +90,7 @@ static relume_status load_rows(struct coded_rows *r, const struct lossy_cut *cut
     for (int i = first, n; !status && i < end; i += n) {
         for (n = 1; i + n < end && there[i + n] == there[i];)
             n++;
-        status = there[i] ? RELUME_OK : encode_rows(r, cut, view, i, i + n);
+        status = there[i] ? RELUME_OK : project_rows(r, cut, view, i, i + n);
     }
     return status;
 }
@@ -151,7 +151,7 @@ static relume_status begin_share(void *context, int member)
 static void count_view(struct coded_rows *r, int view)
 {
     const relume_coefficients *c = r->m->coefficients[view];
-    const struct relume_encode_census *s = &c->report.census;
+    const struct relume_census *s = &c->report.census;
     struct row_counts *to = &r->counts;
     struct view_counts *v = &to->view[view];
     const size_t lights = (size_t)to->lights, planes = (size_t)to->planes, at = (size_t)view;
@@ -178,8 +178,8 @@ static relume_status count_share(void *context)
             const int first = v->row / g->cut[i].side;
             if (!v->rows)
                 continue;
-            status = encode_rows(r, &g->cut[i], g->view[k], first,
-                                 first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
+            status = project_rows(r, &g->cut[i], g->view[k], first,
+                                  first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
             if (!status)
                 count_view(r, g->view[k]);
         }
@@ -211,7 +211,7 @@ static relume_status add_share(void *context)
     return RELUME_OK;
 }
 
-static struct relume_encode_report report_of(const struct coded_rows *r, int view)
+static struct relume_fidelity report_of(const struct coded_rows *r, int view)
 {
     const struct rows_total *s = &r->sum[view];
     const int lights = r->counts.lights, height = r->counts.height;
@@ -219,7 +219,7 @@ static struct relume_encode_report report_of(const struct coded_rows *r, int vie
     double error = 0.0;
     for (int y = 0; y < height; y++)
         error += r->counts.error[(size_t)view * (size_t)height + (size_t)y];
-    struct relume_encode_report report = {
+    struct relume_fidelity report = {
         .fit_rms = s->measured ? sqrt(error / (double)s->measured) : 0.0,
         .typical = root * root,
         .census = s->census,

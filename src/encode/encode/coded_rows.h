@@ -11,7 +11,7 @@
 struct rows_total {
     double root;
     size_t measured, lit;
-    struct relume_encode_census census;  // without black images
+    struct relume_census census;  // without black images
 };
 
 struct coded_rows {

@@ -48,6 +48,6 @@ relume_status coding_find_levels(struct coding *c, double left);
 
 // Writes the tiles that are c->own, and what belongs to them. Errors as relume_pack_write.
 relume_status coding_write(struct coding *c, const char *path,
-                           const struct relume_encode_report *report);
+                           const struct relume_fidelity *report);
 
 #endif

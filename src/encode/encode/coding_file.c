@@ -49,8 +49,7 @@ static void say_empty(const struct coding *c)
                  p->part, p->parts, tiles, relume_plural(tiles), tiles, relume_plural(tiles));
 }
 
-relume_status coding_write(struct coding *c, const char *path,
-                           const struct relume_encode_report *report)
+relume_status coding_write(struct coding *c, const char *path, const struct relume_fidelity *report)
 {
     const struct relume_pack_encode_params *p = c->m->p;
     const int middle = c->m->views / 2;

@@ -45,12 +45,12 @@ static double header_bytes(const relume_coder *coder, int views)
 static relume_status merit_of(double *merit, const relume_coder *coder,
                               const relume_capture *capture,
                               const struct relume_pack_encode_params *p,
-                              const struct relume_encode_params *encode)
+                              const struct relume_project_params *encode)
 {
     const int views = relume_capture_manifest(capture)->views;
     const struct rate_target target = target_of_view(capture, p);
     relume_coefficients *c;
-    relume_status status = relume_encode(&c, coder, capture, views / 2, encode);
+    relume_status status = relume_project(&c, coder, capture, views / 2, encode);
     if (!status)
         status =
             rate_merit(merit, c, views / 2, capture, &target, header_bytes(coder, views), encode);
@@ -66,7 +66,7 @@ struct contest {
     const relume_coder *coder[2];
     const relume_capture *capture;
     const struct relume_pack_encode_params *p;
-    const struct relume_encode_params *encode;
+    const struct relume_project_params *encode;
     bool by_windows;  // of both by one member, else by whole views, one each by two members
     struct merits known;
     int member;            // whose share is in progress
@@ -141,7 +141,7 @@ static double ahead(const struct contest *c)
 relume_status contest_keep_better(relume_coder **out, relume_coder *pictures,
                                   const relume_capture *capture,
                                   const struct relume_pack_encode_params *p,
-                                  const struct relume_encode_params *encode)
+                                  const struct relume_project_params *encode)
 {
     const bool are_many =
         relume_capture_width(capture) > MANY_PIXELS / relume_capture_height(capture);

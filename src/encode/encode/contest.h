@@ -10,6 +10,6 @@
 relume_status contest_keep_better(relume_coder **out, relume_coder *pictures,
                                   const relume_capture *capture,
                                   const struct relume_pack_encode_params *p,
-                                  const struct relume_encode_params *encode);
+                                  const struct relume_project_params *encode);
 
 #endif

@@ -71,7 +71,7 @@ static relume_status judge_books(const struct material *m)
 static relume_status encode_other(void *user, int view, relume_coefficients **out)
 {
     const struct material *m = user;
-    return relume_encode(out, m->coder, m->capture, view, m->encode);
+    return relume_project(out, m->coder, m->capture, view, m->encode);
 }
 
 static relume_status make_books(struct material *m)
@@ -100,13 +100,13 @@ static relume_status make_books(struct material *m)
 static relume_status show_rows(void *contents, int row, int rows, float *rgb)
 {
     const struct relume_pack_contents *c = contents;
-    const struct encode_rows *some = &c->view[c->views / 2].coefficients->some;
+    const struct project_rows *some = &c->view[c->views / 2].coefficients->some;
     return row < some->row || row >= some->row + some->rows
                ? RELUME_OK
                : relume_pack_preview(contents, row, rows, rgb);
 }
 
-static relume_status write_file(const struct material *m, const struct relume_encode_report *report,
+static relume_status write_file(const struct material *m, const struct relume_fidelity *report,
                                 const char *path)
 {
     struct relume_pack_contents contents;
@@ -119,7 +119,7 @@ static relume_status write_file(const struct material *m, const struct relume_en
         if (status)
             return status;
         contents.share = &share;
-        contents.report = (struct relume_encode_report){0};
+        contents.report = (struct relume_fidelity){0};
         const bool middle = m->first <= m->views / 2 && m->views / 2 < m->end;
         const bool waits = m->rows && !m->coefficients[m->first]->some.stored;
         contents.preview = !middle || waits ? NULL : m->rows ? show_rows : relume_pack_preview;
@@ -203,7 +203,7 @@ static relume_status find_bands(void *context)
     relume_status status = RELUME_OK;
     if (!own)
         status =
-            encode_some_rows(&made, m->coder, m->capture, s->first, s->row, s->rows, m->encode);
+            project_some_rows(&made, m->coder, m->capture, s->first, s->row, s->rows, m->encode);
     if (!status)
         memcpy(b->band, bands_at(own ? own : made, s->row), b->sent.size);
     relume_coefficients_destroy(&made);
@@ -243,8 +243,8 @@ static relume_status settle_rows(struct material *m)
         status = relume_capture_mask(mask, m->capture, m->first, m->p->log);
     m->view[m->first].mask = mask->data ? mask : NULL;
     return status ? status
-                  : encode_settle_rows(m->coefficients[m->first], mask,
-                                       relume_encode_curve(m->capture, m->p->display), m->encode);
+                  : project_settle_rows(m->coefficients[m->first], mask,
+                                        relume_encode_curve(m->capture, m->p->display), m->encode);
 }
 
 // What is said of the work on all views, as that of a part.
@@ -307,13 +307,13 @@ static relume_status encode_views(struct material *m)
 }
 
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,
-                                 const char *path, struct relume_encode_report *report,
+                                 const char *path, struct relume_fidelity *report,
                                  const struct relume_pack_encode_params *params)
 {
     const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
-    struct relume_encode_params encode = {
+    struct relume_project_params encode = {
         .log = p.log,
-        .domain = relume_encode_domain(capture, p.domain),
+        .domain = relume_capture_domain(capture, p.domain),
         .storage = encode_is_coded(&p) ? RELUME_STORE_12 : p.storage,
         .step = encode_is_coded(&p) ? RELUME_STEP_COMMON : p.step,
         .threads = p.threads,
@@ -323,7 +323,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     if (!path && !p.writer)
         return RELUME_EINVAL;
     struct material m = {.capture = capture, .coder = coder, .p = &p, .encode = &encode};
-    struct relume_encode_report total = {0};
+    struct relume_fidelity total = {0};
     struct encode_share share;
     struct part_log part;
     relume_status status = find_share(&share, capture, &p);
@@ -337,7 +337,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         status = encode_views(&m);
         if (!status && p.books && report)
             status = judge_books(&m);
-        total = encode_report_mean(m.report + m.first, m.end - m.first);
+        total = fidelity_mean(m.report + m.first, m.end - m.first);
         if (!status && !p.learn_only)
             status = write_file(&m, &total, path);
     }

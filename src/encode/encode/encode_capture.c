@@ -23,12 +23,12 @@
 
 static relume_status learn(relume_coder **coder, struct encode_request *r)
 {
-    const struct relume_encode_params encode = {.log = r->log,
-                                                .domain = r->pack.domain,
-                                                .display = r->pack.display,
-                                                .storage = r->pack.storage,
-                                                .threads = r->pack.threads,
-                                                .team = r->pack.team};
+    const struct relume_project_params encode = {.log = r->log,
+                                                 .domain = r->pack.domain,
+                                                 .display = r->pack.display,
+                                                 .storage = r->pack.storage,
+                                                 .threads = r->pack.threads,
+                                                 .team = r->pack.team};
     struct relume_decision decision;
     if (request_is_lossy(r) && r->decides)
         return relume_pack_decide(coder, r->capture, &r->coder, &r->pack);
@@ -70,7 +70,7 @@ static relume_status pack_encode(struct encode_request *r, const relume_coder *c
 static relume_status write_finely(struct encode_request *r, const relume_coder *coder)
 {
     const relume_status status = pack_encode(r, coder);
-    if (status || !relume_encode_is_coarse(&r->result.measured))
+    if (status || !relume_fidelity_is_coarse(&r->result.measured))
         return status;
     r->pack.storage = RELUME_STORE_HALF;
     return pack_encode(r, coder);
@@ -190,11 +190,11 @@ static void report_file(struct encode_request *r)
                 : r->asked->team && r->asked->team->member ? RELUME_ENCODED_ELSEWHERE
                 : r->asked->parts                          ? RELUME_ENCODED_PART
                                                            : RELUME_ENCODED_FILE;
-    out->domain = relume_encode_domain(r->capture, r->pack.domain);
+    out->domain = relume_capture_domain(r->capture, r->pack.domain);
     out->display = relume_encode_curve(r->capture, r->pack.display);
     out->storage = r->pack.storage ? r->pack.storage : RELUME_STORE_8;
     out->is_coarse = (r->asked->storage || r->asked->parts) && !out->lossy &&
-                     relume_encode_is_coarse(&out->measured);
+                     relume_fidelity_is_coarse(&out->measured);
     if (!r->asked->writer)
         out->file_bytes = file_bytes(r->path);
     out->bytes_per_pixel = out->file_bytes / pixels;

@@ -26,7 +26,7 @@ static double wanted(const struct relume_pack_encode_params *p)
 static relume_status learn_pictures(relume_coder **out, const relume_coder *components,
                                     const relume_capture *capture,
                                     const struct relume_coder_params *coder,
-                                    const struct relume_encode_params *encode)
+                                    const struct relume_project_params *encode)
 {
     const struct relume_coder_info *info = relume_coder_info(components);
     struct relume_coder_params all = *coder;
@@ -44,12 +44,12 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
                                  const struct relume_pack_encode_params *params)
 {
     const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
-    const struct relume_encode_params encode = {.log = p.log,
-                                                .domain = RELUME_DOMAIN_DISPLAY,
-                                                .storage = RELUME_STORE_12,
-                                                .step = RELUME_STEP_COMMON,
-                                                .threads = p.threads,
-                                                .team = p.team};
+    const struct relume_project_params encode = {.log = p.log,
+                                                 .domain = RELUME_DOMAIN_DISPLAY,
+                                                 .storage = RELUME_STORE_12,
+                                                 .step = RELUME_STEP_COMMON,
+                                                 .threads = p.threads,
+                                                 .team = p.team};
     const int lights = relume_capture_manifest(capture)->lights;
     struct relume_decision decision;
     relume_coder *pictures = NULL;

@@ -82,7 +82,7 @@ relume_status material_create(struct material *m, const struct encode_share *sha
 relume_status material_encode(struct material *m, int i)
 {
     const relume_status status =
-        encode_some_rows(&m->coefficients[i], m->coder, m->capture, i, m->row, m->rows, m->encode);
+        project_some_rows(&m->coefficients[i], m->coder, m->capture, i, m->row, m->rows, m->encode);
     if (!status)
         m->report[i] = relume_coefficients_report(m->coefficients[i]);
     m->view[i].coefficients = m->coefficients[i];
@@ -141,7 +141,7 @@ void material_contents(struct relume_pack_contents *contents, const struct mater
     const struct relume_manifest *manifest = relume_capture_manifest(m->capture);
     *contents = (struct relume_pack_contents){
         .coder = m->coder,
-        .domain = relume_encode_domain(m->capture, m->p->domain),
+        .domain = relume_capture_domain(m->capture, m->p->domain),
         .display = relume_encode_curve(m->capture, m->p->display),
         .geometry = manifest->geometry,
         .slabs = manifest->slabs,

@@ -15,7 +15,7 @@ struct material {
     const relume_capture *capture;
     const relume_coder *coder;
     const struct relume_pack_encode_params *p;
-    const struct relume_encode_params *encode;
+    const struct relume_project_params *encode;
     struct relume_pack_view *view;
     struct relume_pack_levels *levels;  // [views]
     relume_coefficients **coefficients;
@@ -23,7 +23,7 @@ struct material {
     relume_books **books;                        // [views], or the first for all
     uint16_t **index;                            // [views][RELUME_MOST_BOOKS]
     struct lossy_words *words;                   // [views]
-    struct relume_encode_report *report;         // [views]
+    struct relume_fidelity *report;              // [views]
     int views;
     int first, end;  // those that are encoded
     int row, rows;   // of one view alone; 0 rows: all

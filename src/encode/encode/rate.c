@@ -177,7 +177,7 @@ static int speed_for(const relume_coder *coder, const relume_capture *capture,
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           relume_coefficients *const *coefficients, const relume_coder *coder,
                           const struct view_groups *groups, const relume_capture *capture,
-                          const struct rate_target *target, const struct relume_encode_params *p,
+                          const struct rate_target *target, const struct relume_project_params *p,
                           const struct rate_team *by)
 {
     const int some = views_of(groups) > groups->count ? MOST_GROUPS : MOST_ALONE;
@@ -224,7 +224,7 @@ double rate_merit_of(double psnr_db, double bytes, const struct rate_target *tar
 
 relume_status rate_merit(double *merit, relume_coefficients *coefficients, int view,
                          const relume_capture *capture, const struct rate_target *target,
-                         double header, const struct relume_encode_params *p)
+                         double header, const struct relume_project_params *p)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(coefficients);
     struct view_groups group;

@@ -29,7 +29,7 @@ struct rate_result {
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           relume_coefficients *const *coefficients, const relume_coder *coder,
                           const struct view_groups *groups, const relume_capture *capture,
-                          const struct rate_target *target, const struct relume_encode_params *p,
+                          const struct rate_target *target, const struct relume_project_params *p,
                           const struct rate_team *by);
 
 // How good planes of that PSNR and so many bytes are about, to compare them with others: in dB, the
@@ -39,6 +39,6 @@ double rate_merit_of(double psnr_db, double bytes, const struct rate_target *tar
 // The same of a coder of one `view` of the capture. Errors as above.
 relume_status rate_merit(double *merit, relume_coefficients *coefficients, int view,
                          const relume_capture *capture, const struct rate_target *target,
-                         double header, const struct relume_encode_params *p);
+                         double header, const struct relume_project_params *p);
 
 #endif

@@ -34,7 +34,7 @@ bool request_has_steps(const struct encode_request *r)
 
 bool request_is_display(const struct encode_request *r)
 {
-    return relume_encode_domain(r->capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
+    return relume_capture_domain(r->capture, r->pack.domain) == RELUME_DOMAIN_DISPLAY;
 }
 
 static bool has_bytes_for(const struct encode_request *r, double least)

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "format/coder/coding.h"
 
+#include <relume/format/team.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -79,7 +80,7 @@ static relume_status write_part(struct encode_request *r, const relume_coder *co
 {
     char digest[RELUME_DIGEST];
     struct kept_part kept = {r, path, digest};
-    struct relume_encode_report own;
+    struct relume_fidelity own;
     const struct relume_team *team = r->pack.team;
     bool all = true;
     relume_status status = relume_capture_digest(digest, r->capture, r->log);
@@ -119,7 +120,7 @@ static relume_status join_parts(void *context, int member, struct relume_buffer 
     for (int i = 0; path && i < parts; i++)
         mem_free(path[i]);
     mem_free(path);
-    return status ? status : give_byte(out, relume_encode_is_coarse(&r->result.measured));
+    return status ? status : give_byte(out, relume_fidelity_is_coarse(&r->result.measured));
 }
 
 relume_status together_write(struct encode_request *r, const relume_coder *coder)

@@ -23,7 +23,7 @@ struct trial_plan {
     int first;                                 // which view of the capture they begin with
     const struct view_groups *groups;
     const relume_capture *capture;
-    const struct relume_encode_params *p;
+    const struct relume_project_params *p;
     const struct rate_team *by;  // or NULL
     int tried, speed;            // of the groups, evenly spread
 };

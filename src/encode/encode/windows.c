@@ -58,12 +58,12 @@ static int windows_along(int length, int window)
 
 static relume_status open_window(struct coded_window *l, const relume_coder *coder,
                                  const relume_capture *capture, const struct relume_rect *at,
-                                 const struct relume_encode_params *encode)
+                                 const struct relume_project_params *encode)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
     const size_t size = (size_t)coder->info.planes * (size_t)at->width * (size_t)at->height;
-    relume_status status = encode_some_rows(&l->coefficients, coder, capture, m->views / 2, at->top,
-                                            at->height, encode);
+    relume_status status = project_some_rows(&l->coefficients, coder, capture, m->views / 2,
+                                             at->top, at->height, encode);
     if (!status)
         status = coefficients_share_steps(&l->coefficients, 1, false, RELUME_STEP_COMMON);
     if (!status)
@@ -164,7 +164,7 @@ static relume_status judge_left_out(double *square, const struct coded_window *l
 // Of a step by both coders; `b` NULL: without lights left out.
 static relume_status add_window(struct points points[2], const relume_coder *const coder[2],
                                 const relume_capture *capture, const struct relume_rect *at, int s,
-                                const double *b, const struct relume_encode_params *encode)
+                                const double *b, const struct relume_project_params *encode)
 {
     const struct av1_effort effort = {step[s], AV1_FAST};
     struct coded_window window[2] = {{0}, {0}};
@@ -208,7 +208,7 @@ static struct windows windows_of(const relume_coder *pictures, const relume_capt
 
 static relume_status add_windows(struct points points[2], const struct windows *w,
                                  const relume_coder *const coder[2], const relume_capture *capture,
-                                 int s, const double *b, const struct relume_encode_params *encode)
+                                 int s, const double *b, const struct relume_project_params *encode)
 {
     const int width = relume_capture_width(capture), height = relume_capture_height(capture);
     relume_status status = RELUME_OK;
@@ -292,7 +292,7 @@ static double *predictor_of(const relume_coder *pictures)
 relume_status windows_compare(double merit[2], double left_out[2],
                               const relume_coder *const coder[2], const relume_capture *capture,
                               const struct rate_target *target, const double header[2],
-                              double clearly, const struct relume_encode_params *encode)
+                              double clearly, const struct relume_project_params *encode)
 {
     const struct windows w = windows_of(coder[1], capture);
     struct points points[2] = {{{0.0}, {0.0}, {0.0}}, {{0.0}, {0.0}, {0.0}}};

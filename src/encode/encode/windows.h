@@ -14,6 +14,6 @@
 relume_status windows_compare(double merit[2], double left_out[2],
                               const relume_coder *const coder[2], const relume_capture *capture,
                               const struct rate_target *target, const double header[2],
-                              double clearly, const struct relume_encode_params *encode);
+                              double clearly, const struct relume_project_params *encode);
 
 #endif

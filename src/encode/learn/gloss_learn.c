@@ -159,8 +159,8 @@ static relume_status interpolate(relume_coder **coder, const relume_capture *cap
 {
     return relume_coder_learn(
         coder, relume_basis_find("table"), capture, relume_coder_params(.choose = true),
-        relume_encode_params(.log = p->log, .threads = p->threads,
-                             .domain = display ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR));
+        relume_project_params(.log = p->log, .threads = p->threads,
+                              .domain = display ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR));
 }
 
 static bool suits(const relume_capture *capture)

@@ -206,7 +206,7 @@ static relume_status select_rest(struct judging *j, const bool *skip)
 static relume_status open_rest(struct judging *j)
 {
     const struct relume_basis *table = relume_basis_find("table");
-    const struct relume_encode_params encode = {
+    const struct relume_project_params encode = {
         .log = j->p->log, .domain = j->codes.domain, .threads = j->p->threads};
     relume_status status = relume_coder_learn(&j->coder[CHORD], table, j->rest,
                                               relume_coder_params(.choose = true), &encode);

@@ -68,7 +68,7 @@ bool pyramid_is_possible(const struct relume_pack_contents *contents)
 relume_status relume_pack_reduce(struct relume_pack_levels *out,
                                  const struct relume_pack_contents *contents,
                                  const struct relume_pack_view *view, enum relume_pyramid pyramid,
-                                 const struct relume_encode_params *params)
+                                 const struct relume_project_params *params)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
     const struct reduction how = {

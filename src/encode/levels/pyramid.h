@@ -19,7 +19,7 @@ relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb)
 relume_status relume_pack_reduce(struct relume_pack_levels *out,
                                  const struct relume_pack_contents *contents,
                                  const struct relume_pack_view *view, enum relume_pyramid pyramid,
-                                 const struct relume_encode_params *params);
+                                 const struct relume_project_params *params);
 void relume_pack_levels_destroy(struct relume_pack_levels *levels);
 
 // Whether a view of that size is to have them; some cannot.

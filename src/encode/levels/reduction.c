@@ -290,7 +290,7 @@ relume_status coefficients_reduce(relume_coefficients **out, const relume_coeffi
                                   const struct relume_image *share, const struct reduction *p)
 {
     struct reducing r = {.from = from, .share = share};
-    struct relume_encode_params encode = p->encode;
+    struct relume_project_params encode = p->encode;
     const struct relume_coefficients_info *info = &from->info;
     *out = NULL;
     encode.storage = from->coarse ? RELUME_STORE_LOG : info->storage;
@@ -318,7 +318,7 @@ relume_status coefficients_reduce(relume_coefficients **out, const relume_coeffi
 }
 
 relume_status share_create(struct relume_image *out, const struct relume_image *mask,
-                           const struct relume_encode_params *p)
+                           const struct relume_project_params *p)
 {
     const size_t width = (size_t)mask->width;
     const relume_status status =
@@ -333,7 +333,7 @@ relume_status share_create(struct relume_image *out, const struct relume_image *
 }
 
 relume_status share_reduce(struct relume_image *out, const struct relume_image *share,
-                           const struct relume_encode_params *p)
+                           const struct relume_project_params *p)
 {
     const size_t width = (size_t)share->width;
     const relume_status status = image_create_large(out, reduced(share->width),

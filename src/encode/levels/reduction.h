@@ -17,7 +17,7 @@ static inline int reduced(int side)
 struct reduction {
     enum relume_domain domain;
     struct relume_transfer display;
-    struct relume_encode_params encode;
+    struct relume_project_params encode;
 };
 
 // Coefficients whose pixels show, under the captured lights, the mean light of the 2 x 2 that they
@@ -28,8 +28,8 @@ relume_status coefficients_reduce(relume_coefficients **out, const relume_coeffi
 // Of each pixel, whether the mask holds it: 0 or 1; and the means of 2 x 2 shares. RELUME_EIO,
 // RELUME_ENOMEM.
 relume_status share_create(struct relume_image *out, const struct relume_image *mask,
-                           const struct relume_encode_params *p);
+                           const struct relume_project_params *p);
 relume_status share_reduce(struct relume_image *out, const struct relume_image *share,
-                           const struct relume_encode_params *p);
+                           const struct relume_project_params *p);
 
 #endif

@@ -19,7 +19,7 @@ struct joining {
     const struct part_file **order;  // [parts], by their numbers
     struct exr_part *exr;
     int exrs;
-    struct relume_encode_report *measured;  // [views]
+    struct relume_fidelity *measured;  // [views]
     const struct relume_log *log;
 };
 
@@ -226,13 +226,13 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
     const int view = first->info.first, lights = count_lights(j), height = height_of_views(j);
     struct exr_part *to = &j->exr[j->exrs];
     struct exr_copied *source = arena_array(&j->arena, (size_t)j->count, sizeof *source);
-    struct encode_rows sums = {
+    struct project_rows sums = {
         .error = arena_array(&j->arena, (size_t)height, sizeof *sums.error),
         .shown_error = arena_array(&j->arena, (size_t)lights, sizeof *sums.shown_error),
         .lit = arena_array(&j->arena, (size_t)lights, sizeof *sums.lit),
         .stored = arena_array(&j->arena, (size_t)height, sizeof *sums.stored),
     };
-    struct relume_encode_census census = {0};
+    struct relume_census census = {0};
     relume_status status = source && sums.error && sums.shown_error && sums.lit && sums.stored
                                ? exr_part_again(to, first->file, 1, &j->arena)
                                : RELUME_ENOMEM;
@@ -250,7 +250,7 @@ static relume_status add_rows_of_view(struct joining *j, int *i)
     }
     if (status)
         return status;
-    j->measured[view] = encode_rows_report(&sums, height, lights);
+    j->measured[view] = project_rows_fidelity(&sums, height, lights);
     j->measured[view].census = census;
     to->height = height;
     to->source = source;
@@ -435,10 +435,9 @@ static relume_status add_header(struct joining *j)
     return status;
 }
 
-static relume_status set_report(struct joining *j, struct relume_encode_report *report)
+static relume_status set_report(struct joining *j, struct relume_fidelity *report)
 {
-    const struct relume_encode_report all =
-        encode_report_mean(j->measured, j->part->info.all_views);
+    const struct relume_fidelity all = fidelity_mean(j->measured, j->part->info.all_views);
     struct exr_attribute *a = find_attribute(j->exr, ATTR_REPORT);
     float *v = arena_array(&j->arena, 2, sizeof *v);
     if (!v)
@@ -453,7 +452,7 @@ static relume_status set_report(struct joining *j, struct relume_encode_report *
     return part_is_coarse(j->part, &all, j->log);
 }
 
-static relume_status gather(struct joining *j, struct relume_encode_report *report)
+static relume_status gather(struct joining *j, struct relume_fidelity *report)
 {
     size_t exrs = 0;
     for (int i = 0; i < j->count; i++)
@@ -504,12 +503,12 @@ static relume_status check_parts(struct joining *j, int threads)
 }
 
 relume_status relume_pack_join(const char *const *parts, int count, const char *path,
-                               struct relume_encode_report *report,
+                               struct relume_fidelity *report,
                                const struct relume_pack_params *params)
 {
     const struct relume_pack_params p = PARAMS_WORK(relume_pack_params, params);
     struct joining j = {.log = p.log};
-    struct relume_encode_report ignored;
+    struct relume_fidelity ignored;
     int open = 0;
     if (count < 1 || (!path && !p.writer))
         return RELUME_EINVAL;

@@ -29,7 +29,7 @@ struct rows_joining {
     struct relume_image *depth, *mask;
     struct relume_pack_view *view;
     struct relume_pack_levels *levels;
-    struct relume_encode_report *report;  // [views]
+    struct relume_fidelity *report;  // [views]
     enum relume_step step;
     enum relume_pyramid pyramid;
     const char *path;
@@ -178,7 +178,7 @@ static bool read_bands(const struct part_file *part, relume_coefficients *c)
     return true;
 }
 
-bool rows_add_errors(struct encode_rows *s, const struct part_file *part, int lights)
+bool rows_add_errors(struct project_rows *s, const struct part_file *part, int lights)
 {
     const char *text = exr_get_text(part->file, 1, ATTR_ERRORS);
     double head[3], one;
@@ -196,11 +196,11 @@ bool rows_add_errors(struct encode_rows *s, const struct part_file *part, int li
     return read_numbers(&text, s->error + part->info.row, (size_t)part->info.rows);
 }
 
-bool rows_add_census(struct relume_encode_census *to, struct encode_rows *s,
-                     const struct part_file *part, int lights)
+bool rows_add_census(struct relume_census *to, struct project_rows *s, const struct part_file *part,
+                     int lights)
 {
     const char *text = exr_get_text(part->file, 1, ATTR_LIT);
-    struct relume_encode_report own;
+    struct relume_fidelity own;
     if (!text || strlen(text) != (size_t)lights || strspn(text, "01") != (size_t)lights ||
         !part_measured(&own, part, 1))
         return false;
@@ -217,7 +217,7 @@ bool rows_add_census(struct relume_encode_census *to, struct encode_rows *s,
     return true;
 }
 
-bool rows_add_stored(struct encode_rows *s, const struct part_file *part)
+bool rows_add_stored(struct project_rows *s, const struct part_file *part)
 {
     const char *text = exr_get_text(part->file, 1, ATTR_STORED);
     double numbers[3];
@@ -267,7 +267,7 @@ static relume_status gather_view(struct rows_joining *j, int v, int *i)
 {
     const struct relume_pack_info *info = &j->header->info;
     const int lights = relume_coder_info(j->coder)->lights, first = *i;
-    const struct relume_encode_params encode = {
+    const struct relume_project_params encode = {
         .log = j->p->log, .storage = info->storage, .scratch = j->p->writer ? NULL : j->path};
     relume_status status =
         coefficients_create(&j->coefficients[v], j->coder, info->width, info->height, &encode);
@@ -295,10 +295,10 @@ static relume_status gather_view(struct rows_joining *j, int v, int *i)
 static relume_status finish_view(struct rows_joining *j, int v)
 {
     const struct relume_pack_info *info = &j->header->info;
-    const struct relume_encode_params encode = {
+    const struct relume_project_params encode = {
         .log = j->p->log, .domain = info->domain, .step = j->step};
     const relume_status status =
-        encode_finish_rows(j->coefficients[v], &j->mask[v], info->display, &encode);
+        project_finish_rows(j->coefficients[v], &j->mask[v], info->display, &encode);
     j->report[v] = relume_coefficients_report(j->coefficients[v]);
     j->view[v] = (struct relume_pack_view){
         .coefficients = j->coefficients[v],
@@ -337,16 +337,16 @@ static relume_status reduce_views(struct rows_joining *j,
 {
     relume_status status = RELUME_OK;
     for (int v = 0; !status && v < contents->views; v++) {
-        status = relume_pack_reduce(&j->levels[v], contents, &j->view[v], j->pyramid,
-                                    relume_encode_params(.log = j->p->log, .step = j->step,
-                                                         .threads = j->p->threads,
-                                                         .scratch = j->p->writer ? NULL : j->path));
+        status = relume_pack_reduce(
+            &j->levels[v], contents, &j->view[v], j->pyramid,
+            relume_project_params(.log = j->p->log, .step = j->step, .threads = j->p->threads,
+                                  .scratch = j->p->writer ? NULL : j->path));
         j->view[v].levels = j->levels[v].levels ? &j->levels[v] : NULL;
     }
     return status;
 }
 
-static relume_status write_views(struct rows_joining *j, const struct relume_encode_report *report)
+static relume_status write_views(struct rows_joining *j, const struct relume_fidelity *report)
 {
     const struct relume_pack_info *info = &j->header->info;
     struct relume_pack_contents contents = {
@@ -410,7 +410,7 @@ static void destroy(struct rows_joining *j)
 }
 
 relume_status join_rows(const struct part_file *const *parts, int count, const char *path,
-                        struct relume_encode_report *report, const struct relume_pack_params *p)
+                        struct relume_fidelity *report, const struct relume_pack_params *p)
 {
     struct rows_joining j = {.part = parts, .count = count, .path = path, .p = p};
     relume_status status = read_header(&j);
@@ -421,7 +421,7 @@ relume_status join_rows(const struct part_file *const *parts, int count, const c
     if (!status)
         status = gather_views(&j);
     if (!status) {
-        *report = encode_report_mean(j.report, j.header->info.views);
+        *report = fidelity_mean(j.report, j.header->info.views);
         status = part_is_coarse(j.part[0], report, p->log);
     }
     if (!status)

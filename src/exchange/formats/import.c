@@ -276,7 +276,7 @@ static relume_status keep_codes(struct material *m, const char *out,
         .offset = f->offset,
     };
     return relume_coefficients_keep(&m->coefficients, &codes,
-                                    relume_encode_params(.log = p->log, .scratch = out));
+                                    relume_project_params(.log = p->log, .scratch = out));
 }
 
 static relume_status write_pack(const struct material *m, const char *out,

@@ -42,7 +42,7 @@ static relume_status write(const struct relume_codes *codes, bool sphere, const 
 {
     relume_coefficients *coefficients = NULL;
     relume_status status = relume_coefficients_keep(
-        &coefficients, codes, relume_encode_params(.log = p->log, .scratch = out));
+        &coefficients, codes, relume_project_params(.log = p->log, .scratch = out));
     const struct relume_pack_view view = {.coefficients = coefficients};
     struct relume_pack_contents contents = {
         .coder = codes->coder,

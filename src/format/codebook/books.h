@@ -66,7 +66,7 @@ struct relume_books_info {
 const struct relume_books_info *relume_books_info(const relume_books *books);
 
 // The nearest vectors for every pixel of a view: index[books] -> [height][width], one book after
-// another. `store_rms` (may be NULL) receives what that cost, as in struct relume_encode_report.
+// another. `store_rms` (may be NULL) receives what that cost, as in struct relume_fidelity.
 // RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL. Only log, dither and threads of `params` are read.
 relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
                                   const relume_books *books, const relume_coefficients *view,

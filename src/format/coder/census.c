@@ -65,7 +65,7 @@ static bool is_lit(const float *samples, size_t n)
     return false;
 }
 
-static void count_pixels(struct relume_encode_census *count, const struct gathered *g, int lights,
+static void count_pixels(struct relume_census *count, const struct gathered *g, int lights,
                          size_t n, const float *mask)
 {
     for (size_t x = 0; x < n; x++) {
@@ -104,9 +104,9 @@ bool census_is_lit(const struct census *c, int light)
     return lit;
 }
 
-struct relume_encode_census census_result(const struct census *c)
+struct relume_census census_result(const struct census *c)
 {
-    struct relume_encode_census sum = {0};
+    struct relume_census sum = {0};
     for (int w = 0; w < c->workers; w++) {
         sum.pixels += c->count[w].pixels;
         sum.black += c->count[w].black;

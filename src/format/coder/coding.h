@@ -71,10 +71,10 @@ struct relume_transfer relume_encode_curve(const relume_capture *capture,
                                            struct relume_transfer asked);
 
 // At most `pixels` (default 65536) pixels of all views, spread evenly and by no regular pattern;
-// masked ones are left out. The caller destroys `out`. `params` as for relume_encode (log, domain,
+// masked ones are left out. The caller destroys `out`. `params` as for relume_project (log, domain,
 // threads). Returns an input status, RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status relume_samples_read(struct relume_samples *out, const relume_capture *capture,
-                                  size_t pixels, const struct relume_encode_params *params);
+                                  size_t pixels, const struct relume_project_params *params);
 void relume_samples_destroy(struct relume_samples *samples);
 
 // How values between the captured lights follow where the planes are the pictures themselves,
@@ -83,7 +83,7 @@ void relume_samples_destroy(struct relume_samples *samples);
 // choice in `coder`; `delaunay` of fewer than 8 lights or more than 400. Errors of
 // relume_coder_learn.
 relume_status relume_coder_between(struct relume_coder_params *coder, const relume_capture *capture,
-                                   const struct relume_encode_params *encode);
+                                   const struct relume_project_params *encode);
 
 // What relume_coder_decide chose. Plain data.
 struct relume_decision {
@@ -96,19 +96,19 @@ struct relume_decision {
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,
                                   const relume_capture *capture, double quality_db,
                                   const struct relume_coder_params *coder,
-                                  const struct relume_encode_params *encode);
+                                  const struct relume_project_params *encode);
 
 // Run `coder` over one view of `capture`. Pixels outside the view's mask become 0.
 // Returns an input status, RELUME_EIO (temporary file), RELUME_ENOMEM, RELUME_ECANCEL.
-relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
-                            const relume_capture *capture, int view,
-                            const struct relume_encode_params *params);
+relume_status relume_project(relume_coefficients **out, const relume_coder *coder,
+                             const relume_capture *capture, int view,
+                             const struct relume_project_params *params);
 void relume_coefficients_destroy(relume_coefficients **coefficients);
 
 // A copy.
-struct relume_encode_report relume_coefficients_report(const relume_coefficients *coefficients);
+struct relume_fidelity relume_coefficients_report(const relume_coefficients *coefficients);
 // Whether the steps of the codes are too coarse beside what is typical: half floats do better.
-bool relume_encode_is_coarse(const struct relume_encode_report *report);
+bool relume_fidelity_is_coarse(const struct relume_fidelity *report);
 
 // What coefficients are; pointers belong to them.
 struct relume_coefficients_info {
@@ -144,6 +144,6 @@ void relume_codes_part_destroy(struct relume_codes_part *part);
 // written from: the codes come back as they are. Not for floats. Of `params` log and scratch are
 // used. RELUME_EIO, RELUME_ENOMEM.
 relume_status relume_coefficients_keep(relume_coefficients **out, const struct relume_codes *codes,
-                                       const struct relume_encode_params *params);
+                                       const struct relume_project_params *params);
 
 #endif

@@ -36,7 +36,7 @@ void relume_coefficients_destroy(relume_coefficients **coefficients)
 }
 
 relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder, int width,
-                                  int height, const struct relume_encode_params *p)
+                                  int height, const struct relume_project_params *p)
 {
     const size_t planes = (size_t)relume_coder_info(coder)->planes;
     relume_coefficients *c = *out = mem_zeroed(1, sizeof *c);
@@ -338,9 +338,9 @@ static relume_status keep_row(relume_coefficients *c, const struct relume_codes 
 }
 
 relume_status relume_coefficients_keep(relume_coefficients **out, const struct relume_codes *codes,
-                                       const struct relume_encode_params *params)
+                                       const struct relume_project_params *params)
 {
-    struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
+    struct relume_project_params p = PARAMS_WORK(relume_project_params, params);
     p.storage = codes->storage;
     void *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof(float));
     relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);
@@ -361,7 +361,7 @@ relume_status relume_coefficients_keep(relume_coefficients **out, const struct r
     return status;
 }
 
-struct relume_encode_report relume_coefficients_report(const relume_coefficients *coefficients)
+struct relume_fidelity relume_coefficients_report(const relume_coefficients *coefficients)
 {
     return coefficients->report;
 }

@@ -24,7 +24,7 @@ struct range range_join(struct range a, struct range b);
 struct range range_settle(struct range r);
 
 // Rows of a view that were encoded by themselves, and what of them the whole view's report takes.
-struct encode_rows {
+struct project_rows {
     int row, rows;        // 0 rows: all of the view
     double *error;        // [height of the view]: squared, each row's own sum, so that sums do not
                           // depend on who adds them up
@@ -53,12 +53,12 @@ struct relume_coefficients {
     int bands;
     bool coarse;  // `log`: halves of 8 significant bits
     int fd;
-    struct relume_encode_report report;
-    struct encode_rows some;
+    struct relume_fidelity report;
+    struct project_rows some;
 };
 
 relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder, int width,
-                                  int height, const struct relume_encode_params *p);
+                                  int height, const struct relume_project_params *p);
 // Where the rows from `row` on lie in the scratch file.
 off_t coefficients_offset(const relume_coefficients *c, int row);
 // The step between the values of waiting codes, which begin at the range's minimum.
@@ -89,30 +89,30 @@ void coefficients_restore(const relume_coefficients *c, int plane, int row, cons
 relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out);
 
 // The rows `row` .. `row + rows` of a view, from BAND_ROWS on to BAND_ROWS on: they wait, steps are
-// not chosen. As relume_encode.
-relume_status encode_some_rows(relume_coefficients **out, const relume_coder *coder,
-                               const relume_capture *capture, int view, int row, int rows,
-                               const struct relume_encode_params *p);
+// not chosen. As relume_project.
+relume_status project_some_rows(relume_coefficients **out, const relume_coder *coder,
+                                const relume_capture *capture, int view, int row, int rows,
+                                const struct relume_project_params *p);
 // Rows that join those that `c` has, which may be the same: `some` and the census of the report are
 // theirs alone. As above.
-relume_status encode_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
-                               int row, int rows, const struct relume_encode_params *p);
+relume_status project_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
+                                int row, int rows, const struct relume_project_params *p);
 // All rows wait in `c`, its bands and `some` are those of all of them: choose the steps and fill in
 // the report. `display` is the curve of the domain `p->domain`, which is not AUTO. RELUME_EIO,
 // RELUME_ENOMEM.
-relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
-                                 struct relume_transfer display,
-                                 const struct relume_encode_params *p);
+relume_status project_finish_rows(relume_coefficients *c, const struct relume_image *mask,
+                                  struct relume_transfer display,
+                                  const struct relume_project_params *p);
 
 // Some rows wait in `c`, its bands are those of all rows: choose the steps, and measure what
 // storing costs on those that are here, into `some.stored`. `masked` and the rest are as above.
-relume_status encode_settle_rows(relume_coefficients *c, const struct relume_image *mask,
-                                 struct relume_transfer display,
-                                 const struct relume_encode_params *p);
+relume_status project_settle_rows(relume_coefficients *c, const struct relume_image *mask,
+                                  struct relume_transfer display,
+                                  const struct relume_project_params *p);
 // The report of a view, of what was added up and measured of all its rows; its census is left
 // empty.
-struct relume_encode_report encode_rows_report(const struct encode_rows *all, int height,
-                                               int lights);
+struct relume_fidelity project_rows_fidelity(const struct project_rows *all, int height,
+                                             int lights);
 
 // Which of `parts` parts holds what: whole views, or where there are fewer views than parts rows of
 // one.
@@ -127,7 +127,7 @@ relume_status encode_share_find(struct encode_share *out, int part, int parts,
                                 const relume_capture *capture, const struct relume_log *log);
 
 // Of all views: root mean squares, means, sums. `steps_rms` of each is set.
-struct relume_encode_report encode_report_mean(const struct relume_encode_report *view, int views);
+struct relume_fidelity fidelity_mean(const struct relume_fidelity *view, int views);
 
 // Coefficients in place of a view's own: planes[plane * stride + x] of a row.
 struct encode_values {
@@ -139,7 +139,7 @@ struct encode_values {
 // RELUME_ECANCEL.
 relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
                            int view, const struct encode_values *values,
-                           const struct relume_encode_params *p);
+                           const struct relume_project_params *p);
 
 // Of the tiles of a view, numbered row by row: those from `first` to `end`. The side is a multiple
 // of BAND_ROWS.
@@ -156,6 +156,6 @@ relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients 
                                  const relume_capture *capture, int view,
                                  const struct encode_tiles *tiles,
                                  const struct encode_values *values,
-                                 const struct relume_encode_params *p);
+                                 const struct relume_project_params *p);
 
 #endif

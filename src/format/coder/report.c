@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-static void add_census(struct relume_encode_census *sum, const struct relume_encode_census *c)
+static void add_census(struct relume_census *sum, const struct relume_census *c)
 {
     sum->pixels += c->pixels;
     sum->black += c->black;
@@ -15,9 +15,9 @@ static void add_census(struct relume_encode_census *sum, const struct relume_enc
     sum->black_images += c->black_images;
 }
 
-struct relume_encode_report encode_report_mean(const struct relume_encode_report *view, int views)
+struct relume_fidelity fidelity_mean(const struct relume_fidelity *view, int views)
 {
-    struct relume_encode_report sum = {0};
+    struct relume_fidelity sum = {0};
     for (int i = 0; i < views; i++) {
         sum.fit_rms += view[i].fit_rms * view[i].fit_rms / views;
         sum.store_rms += view[i].store_rms * view[i].store_rms / views;
@@ -34,7 +34,7 @@ struct relume_encode_report encode_report_mean(const struct relume_encode_report
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
 // rest few of them.
-bool relume_encode_is_coarse(const struct relume_encode_report *report)
+bool relume_fidelity_is_coarse(const struct relume_fidelity *report)
 {
     static const double COARSE = 0.05;  // photographs of 8 bits lose a hundredth of this
     const double lost = report->typical > 0.0 ? report->steps_rms / report->typical : 0.0;

@@ -57,7 +57,7 @@ struct relume_pack_share {
     enum relume_step step;          // what was asked for
     enum relume_pyramid pyramid;    // likewise
     bool shared_books;              // all views of all parts have the same
-    const struct relume_encode_report *measured;  // [views] of it; `coded`: one of all views
+    const struct relume_fidelity *measured;  // [views] of it; `coded`: one of all views
     bool coded;  // planes are coded with loss: it holds the views that have `coded` words, of all
                  // tiles or of some; tiles of 0 bytes are another part's
     int group;   // then: the number of its first group
@@ -73,7 +73,7 @@ struct relume_pack_contents {
     const struct relume_geometry *slab;  // [slabs]
     int views;
     const struct relume_pack_view *view;  // [views]
-    struct relume_encode_report report;   // over all views; NaN: not known
+    struct relume_fidelity report;        // over all views; NaN: not known
     // The picture of the first part, for ordinary EXR viewers, of the views' size, or where they
     // have reduced levels, of that of relume_pack_shown: fill linear rgb[rows][width][3] from `row`
     // on, and return what failed. Called from several threads. NULL: black. relume_pack_preview

@@ -84,9 +84,9 @@ static relume_status read_place(struct part_file *p, const struct relume_limits 
     return RELUME_OK;
 }
 
-bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr)
+bool part_measured(struct relume_fidelity *out, const struct part_file *part, int exr)
 {
-    struct relume_encode_census *c = &out->census;
+    struct relume_census *c = &out->census;
     const char *text = exr_get_text(part->file, exr, ATTR_MEASURED);
     return text &&
            sscanf(text, SCAN_MEASURED, &out->fit_rms, &out->store_rms, &out->steps_rms,
@@ -132,7 +132,7 @@ bool part_tiles(struct lossy_held *out, const struct part_file *part, int exr)
 // "group0003" and the next ones, whose views are counted, and then what belongs to views.
 static relume_status check_groups(struct part_file *p, const struct relume_log *log)
 {
-    struct relume_encode_report measured;
+    struct relume_fidelity measured;
     struct lossy_held tiles;
     char name[32];
     int k = 1, view, first = 0;
@@ -183,7 +183,7 @@ static relume_status check_names(const struct part_file *p, const struct relume_
             before = name;
             continue;
         }
-        struct relume_encode_report measured;
+        struct relume_fidelity measured;
         snprintf(view, sizeof view, "view%04d", next++);
         if (strcmp(name, view) || !part_measured(&measured, p, k))
             return bad(p, "list of views", log);
@@ -236,10 +236,10 @@ relume_status part_open(struct part_file *out, const char *path, const struct re
     return status;
 }
 
-relume_status part_is_coarse(const struct part_file *part, const struct relume_encode_report *all,
+relume_status part_is_coarse(const struct part_file *part, const struct relume_fidelity *all,
                              const struct relume_log *log)
 {
-    if (!part->free_storage || !relume_encode_is_coarse(all))
+    if (!part->free_storage || !relume_fidelity_is_coarse(all))
         return RELUME_OK;
     return log_fail(log, RELUME_EUNFIT,
                     "%s: very bright highlights: these bits will ruin the picture; run all parts "

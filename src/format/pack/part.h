@@ -30,9 +30,9 @@ int part_next_member(const char **list, int views, size_t words[2]);
 // it does not say.
 bool part_tiles(struct lossy_held *out, const struct part_file *part, int exr);
 // What was measured of the view whose rows are part `exr` of the file.
-bool part_measured(struct relume_encode_report *out, const struct part_file *part, int exr);
+bool part_measured(struct relume_fidelity *out, const struct part_file *part, int exr);
 // RELUME_EUNFIT with a sentence where nobody asked for the storage and its steps are too coarse.
-relume_status part_is_coarse(const struct part_file *part, const struct relume_encode_report *all,
+relume_status part_is_coarse(const struct part_file *part, const struct relume_fidelity *all,
                              const struct relume_log *log);
 void part_close(struct part_file *part);
 

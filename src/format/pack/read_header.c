@@ -66,7 +66,7 @@ static relume_status read_kinds(relume_pack *p)
 static void read_report(relume_pack *p)
 {
     const float *v = reader_floats(p, 0, ATTR_REPORT, 2);
-    p->info.report = (struct relume_encode_report){
+    p->info.report = (struct relume_fidelity){
         .fit_rms = v ? (double)v[0] : (double)NAN,
         .store_rms = v ? (double)v[1] : (double)NAN,
     };

@@ -84,7 +84,7 @@ static void add_plane(struct writer *w, const char *name, int view,
 }
 
 // What join adds up of rows whose steps are known.
-static const char *stored_text(struct writer *w, const struct encode_rows *s)
+static const char *stored_text(struct writer *w, const struct project_rows *s)
 {
     enum { EACH = 80 };
     char *text = arena_array(&w->arena, (size_t)s->rows + 1, EACH), *to = text;
@@ -114,9 +114,9 @@ static void fill_with_planes(struct writer *w, struct exr_part *part,
     add_steps(w, part, info);
 }
 
-const char *writer_measured(struct writer *w, const struct relume_encode_report *r)
+const char *writer_measured(struct writer *w, const struct relume_fidelity *r)
 {
-    const struct relume_encode_census *c = &r->census;
+    const struct relume_census *c = &r->census;
     const char *text = arena_format(&w->arena, FORMAT_MEASURED, r->fit_rms, r->store_rms,
                                     r->steps_rms, r->psnr_db, r->typical, c->pixels, c->black,
                                     c->clipped, c->always_clipped, c->repaired, c->black_images);
@@ -148,7 +148,7 @@ static const char **waiting_channels(struct writer *w, int planes)
 static const char *errors_text(struct writer *w, const relume_coefficients *c)
 {
     enum { EACH = 26 };
-    const struct encode_rows *s = &c->some;
+    const struct project_rows *s = &c->some;
     const size_t lights = (size_t)w->coder->lights, rows = (size_t)s->rows;
     char *text = arena_array(&w->arena, rows + lights + 5, EACH), *to = text;
     if (!text) {
@@ -164,7 +164,7 @@ static const char *errors_text(struct writer *w, const relume_coefficients *c)
 }
 
 // A digit for each light.
-static const char *lit_text(struct writer *w, const struct encode_rows *s)
+static const char *lit_text(struct writer *w, const struct project_rows *s)
 {
     const size_t lights = (size_t)w->coder->lights;
     char *text = arena_array(&w->arena, lights + 1, 1);
@@ -195,7 +195,7 @@ static void add_codes(struct writer *w, int index, bool shared)
 {
     const struct relume_pack_view *view = &w->contents->view[index];
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
-    const struct encode_rows *some = &view->coefficients->some;
+    const struct project_rows *some = &view->coefficients->some;
     struct exr_part *part =
         writer_part(w, arena_format(&w->arena, "view%04d", index), info->width, info->height);
     part->tile = view->levels ? FORMAT_TILE : 0;

@@ -44,7 +44,7 @@ void writer_add_view(struct writer *w, int view, bool shared);
 // The reduced levels of a view, and their masks.
 void writer_add_levels(struct writer *w, int view);
 // A report as join needs it, to the last digit.
-const char *writer_measured(struct writer *w, const struct relume_encode_report *report);
+const char *writer_measured(struct writer *w, const struct relume_fidelity *report);
 // What the first part shows of a view: its coefficients, or those of a reduced level.
 const struct relume_coefficients_info *writer_shown(const struct relume_pack_view *view);
 // What its shadows are traced with, or its highlights wander by. Errors of learnt_encode.

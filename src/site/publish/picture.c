@@ -7,6 +7,7 @@
 #include "image/image/picture.h"
 
 #include <math.h>
+#include <relume/format/coder.h>
 #include <relume/context.h>
 #include <relume/frame.h>
 

@@ -255,7 +255,7 @@ static void measure_band(struct encoding *e)
 }
 
 // Ranges and steps are differences of coefficients, which must not overflow.
-static relume_status check_size(const struct encoding *e, const struct relume_encode_params *p)
+static relume_status check_size(const struct encoding *e, const struct relume_project_params *p)
 {
     const float most = FLT_MAX / 4.0f;
     const struct range *r = e->out->band + (size_t)(e->packed_row / BAND_ROWS) * (size_t)e->planes;
@@ -291,7 +291,7 @@ static void start_packing(struct encoding *e)
         pack_band(e);
 }
 
-static relume_status finish_packing(struct encoding *e, const struct relume_encode_params *p)
+static relume_status finish_packing(struct encoding *e, const struct relume_project_params *p)
 {
     thread_wait(&e->packing);
     if (!e->write_error)
@@ -307,7 +307,7 @@ static relume_status read_band(struct encoding *e)
                    : relume_table_fetch(e->table, e->rows);
 }
 
-static relume_status encode_band(struct encoding *e, const struct relume_encode_params *p)
+static relume_status encode_band(struct encoding *e, const struct relume_project_params *p)
 {
     relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
@@ -342,7 +342,7 @@ static relume_status see_near(struct encoding *e)
 }
 
 static relume_status open_table(struct encoding *e, const relume_capture *capture, int view,
-                                const struct relume_encode_params *p)
+                                const struct relume_project_params *p)
 {
     const relume_status status = relume_table_open(
         &e->table, capture, view,
@@ -361,7 +361,7 @@ static bool say_done(const struct encoding *e, const relume_capture *capture, in
 }
 
 static relume_status encode_bands(struct encoding *e, const relume_capture *capture, int view,
-                                  const struct relume_encode_params *p)
+                                  const struct relume_project_params *p)
 {
     const int first = e->row;
     relume_status status = open_table(e, capture, view, p);
@@ -434,7 +434,7 @@ static void compare_row(void *context, size_t item, int worker)
     const struct stored_row *w = &s->work[worker];
     struct encode_stored *r = &s->row[item];
     const size_t width = (size_t)e->width, size = (size_t)e->lights * width;
-    const struct encode_rows *some = &s->c->some;
+    const struct project_rows *some = &s->c->some;
     if (!is_measured(s->c, (int)item) ||
         (some->rows && ((int)item < some->row || (int)item >= some->row + some->rows)))
         return;
@@ -453,7 +453,7 @@ static void compare_row(void *context, size_t item, int worker)
     image_forget(&e->mask, (int)item, 1);
 }
 
-static relume_status add_rows(struct relume_encode_report *r, struct encoding *e,
+static relume_status add_rows(struct relume_fidelity *r, struct encoding *e,
                               const struct encode_stored *row)
 {
     struct encode_stored all = {0};
@@ -510,7 +510,7 @@ const char *relume_domain_name(enum relume_domain domain, struct relume_transfer
                                                : "display";
 }
 
-enum relume_domain relume_encode_domain(const relume_capture *capture, enum relume_domain domain)
+enum relume_domain relume_capture_domain(const relume_capture *capture, enum relume_domain domain)
 {
     if (domain != RELUME_DOMAIN_AUTO)
         return domain;
@@ -600,7 +600,7 @@ static void free_encoder(struct encoding *e)
 // Without memory so far, but for the mask.
 static relume_status begin(struct encoding *e, const relume_coder *coder,
                            const relume_capture *capture, int view,
-                           const struct relume_encode_params *p)
+                           const struct relume_project_params *p)
 {
     const struct relume_manifest *m = relume_capture_manifest(capture);
     *e = (struct encoding){
@@ -616,13 +616,13 @@ static relume_status begin(struct encoding *e, const relume_coder *coder,
         .threads = p->threads,
     };
     e->runs = runs_of(e);
-    if (relume_encode_domain(capture, p->domain) == RELUME_DOMAIN_DISPLAY)
+    if (relume_capture_domain(capture, p->domain) == RELUME_DOMAIN_DISPLAY)
         e->display = relume_encode_curve(capture, p->display);
     return relume_capture_mask(&e->mask, capture, view, p->log);
 }
 
 // What was measured becomes the report.
-static relume_status fill_report(struct relume_encode_report *r, struct encoding *e,
+static relume_status fill_report(struct relume_fidelity *r, struct encoding *e,
                                  const struct encode_stored *row)
 {
     relume_status status = RELUME_OK;
@@ -674,7 +674,7 @@ static relume_status keep_sums(relume_coefficients *c, struct encoding *e)
 // Rows of a view, 0: all of them, into `c`; what a report needs of them is left in `e`.
 static relume_status encode_into(struct encoding *e, relume_coefficients *c,
                                  const relume_capture *capture, int view, int row, int rows,
-                                 const struct relume_encode_params *p)
+                                 const struct relume_project_params *p)
 {
     e->out = c;
     e->row = row;
@@ -694,10 +694,10 @@ static relume_status encode_into(struct encoding *e, relume_coefficients *c,
     return status;
 }
 
-relume_status encode_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
-                               int row, int rows, const struct relume_encode_params *params)
+relume_status project_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
+                                int row, int rows, const struct relume_project_params *params)
 {
-    const struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
+    const struct relume_project_params p = PARAMS_WORK(relume_project_params, params);
     struct encoding e;
     relume_status status = begin(&e, c->info.coder, capture, view, &p);
     if (!status)
@@ -708,11 +708,11 @@ relume_status encode_more_rows(relume_coefficients *c, const relume_capture *cap
     return status;
 }
 
-relume_status encode_some_rows(relume_coefficients **out, const relume_coder *coder,
-                               const relume_capture *capture, int view, int row, int rows,
-                               const struct relume_encode_params *params)
+relume_status project_some_rows(relume_coefficients **out, const relume_coder *coder,
+                                const relume_capture *capture, int view, int row, int rows,
+                                const struct relume_project_params *params)
 {
-    const struct relume_encode_params p = PARAMS_WORK(relume_encode_params, params);
+    const struct relume_project_params p = PARAMS_WORK(relume_project_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     *out = NULL;
     if (!coder->map || m->lights != coder->info.lights || view < 0 || view >= m->views)
@@ -734,11 +734,11 @@ relume_status encode_some_rows(relume_coefficients **out, const relume_coder *co
     return status;
 }
 
-relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
-                            const relume_capture *capture, int view,
-                            const struct relume_encode_params *params)
+relume_status relume_project(relume_coefficients **out, const relume_coder *coder,
+                             const relume_capture *capture, int view,
+                             const struct relume_project_params *params)
 {
-    return encode_some_rows(out, coder, capture, view, 0, 0, params);
+    return project_some_rows(out, coder, capture, view, 0, 0, params);
 }
 
 // ---------------------------------------------------------------- rows of several
@@ -755,7 +755,7 @@ static void join_bands(struct encoding *e, const relume_coefficients *c)
 // What rows of several know of the view, before steps are chosen.
 static relume_status begin_rows(struct encoding *e, relume_coefficients *c,
                                 const struct relume_image *mask, struct relume_transfer display,
-                                const struct relume_encode_params *p)
+                                const struct relume_project_params *p)
 {
     const bool coded = p->domain == RELUME_DOMAIN_DISPLAY;
     *e = (struct encoding){
@@ -791,9 +791,9 @@ static void end_rows(struct encoding *e)
     free_encoder(e);
 }
 
-relume_status encode_finish_rows(relume_coefficients *c, const struct relume_image *mask,
-                                 struct relume_transfer display,
-                                 const struct relume_encode_params *p)
+relume_status project_finish_rows(relume_coefficients *c, const struct relume_image *mask,
+                                  struct relume_transfer display,
+                                  const struct relume_project_params *p)
 {
     struct encoding e;
     relume_status status = begin_rows(&e, c, mask, display, p);
@@ -803,9 +803,9 @@ relume_status encode_finish_rows(relume_coefficients *c, const struct relume_ima
     return status;
 }
 
-relume_status encode_settle_rows(relume_coefficients *c, const struct relume_image *mask,
-                                 struct relume_transfer display,
-                                 const struct relume_encode_params *p)
+relume_status project_settle_rows(relume_coefficients *c, const struct relume_image *mask,
+                                  struct relume_transfer display,
+                                  const struct relume_project_params *p)
 {
     struct encoding e;
     relume_status status = begin_rows(&e, c, mask, display, p);
@@ -822,10 +822,9 @@ relume_status encode_settle_rows(relume_coefficients *c, const struct relume_ima
     return status;
 }
 
-struct relume_encode_report encode_rows_report(const struct encode_rows *all, int height,
-                                               int lights)
+struct relume_fidelity project_rows_fidelity(const struct project_rows *all, int height, int lights)
 {
-    struct relume_encode_report report = {0};
+    struct relume_fidelity report = {0};
     struct encoding e = {
         .height = height,
         .lights = lights,
@@ -854,7 +853,7 @@ static void take_values(struct encoding *e, bool every, const struct encode_valu
 static relume_status begin_judging(struct encoding *e, relume_coefficients *c,
                                    const relume_capture *capture, int view,
                                    const struct encode_tiles *tiles,
-                                   const struct relume_encode_params *p)
+                                   const struct relume_project_params *p)
 {
     relume_status status = begin(e, c->info.coder, capture, view, p);
     e->out = c;
@@ -880,7 +879,7 @@ static void end_judging(struct encoding *e)
 
 relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
                            int view, const struct encode_values *values,
-                           const struct relume_encode_params *p)
+                           const struct relume_project_params *p)
 {
     struct encoding e;
     relume_status status = begin_judging(&e, c, capture, view, NULL, p);
@@ -927,7 +926,7 @@ relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients 
                                  const relume_capture *capture, int view,
                                  const struct encode_tiles *tiles,
                                  const struct encode_values *values,
-                                 const struct relume_encode_params *p)
+                                 const struct relume_project_params *p)
 {
     struct encoding e;
     memset(out, 0, (size_t)(tiles->end - tiles->first) * sizeof *out);

@@ -87,7 +87,11 @@ for list in lights.csv lights.json; do
     same "$list says the same" a.exr b.exr
 done
 
-# JSON that names its pictures, in another order; with a name that is none
+# lists that name their pictures, in another order; with a name that is none
+rm -f stage/*.*
+awk '{ line[NR] = sprintf("dir_%d,%s,%s,%s", NR - 1, $1, $2, $3) } END { print "name,x,y,z"; for (i = NR; i > 0; i--) print line[i] }' places.txt >stage/lights.csv
+expect_ok 'a table by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
+same 'a table says the same in any order' a.exr b.exr
 rm -f stage/*.*
 awk '{ line[NR] = sprintf("{\"name\": \"dir_%d.exr\", \"direction\": [%s, %s, %s]}", NR - 1, $1, $2, $3) } END { printf "["; for (i = NR; i > 0; i--) printf "%s%s", line[i], (i > 1 ? ", " : "]\n") }' places.txt >stage/lights.json
 expect_ok 'a list by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
@@ -115,6 +119,14 @@ rm -f light*.*
 expect_fail 'no directions' 1 'bare.exr: 24 layers, but no directions' no "$RELUME" encode bare.exr -o no
 printf '1 0 1\n0 1 1\n' >bare.txt
 expect_fail 'too few directions' 1 'bare.txt: 2 lights; expected 24' no "$RELUME" encode bare.exr -o no
+awk '{ printf "light%04d %s %s %s\n", 23 - (NR - 1), $1, $2, $3 }' places.txt >bare.txt
+"$RELUME" encode bare.exr -o turned.exr --basis table -q
+tac bare.txt >bare.new && mv bare.new bare.txt
+expect_ok 'lines by name' - "$RELUME" encode bare.exr -o bare-lit.exr --basis table -q
+same 'lines of layers in any order' turned.exr bare-lit.exr
+sed -i 's/light0004/light0099/' bare.txt
+expect_fail 'a layer without a light' 1 "names no light 'light0004'" no "$RELUME" encode bare.exr -o no
+rm bare.txt
 head -c 20000 stage.exr >short.exr
 expect_fail 'a truncated file' 1 'short.exr' no "$RELUME" encode short.exr -o no
 rm stage/olat/dir_3.exr

@@ -53,7 +53,7 @@ struct relume_captured_lights {
     struct relume_vec3 *direction;  // [count], unit, in the order of the file
     struct relume_vec3 *position;   // [count], world units, or NULL: only directions are given
     float (*intensity)[3];          // [count], or NULL: all 1
-    char **name;                    // [count], or NULL: the file does not name all (JSON alone)
+    char **name;                    // [count], or NULL: the file does not name all (lists only)
 };
 
 // Read lights from a capture.json or the JSON of `relume lights`, a .dome file (RelightLab: mm from

@@ -56,8 +56,7 @@ bool relume_capture_hemispherical(const relume_capture *capture)
     return true;
 }
 
-// All pictures of the array lie behind each other.
-static struct picture_array array_of(const relume_capture *c, int view, int light)
+struct picture_array capture_array(const relume_capture *c, int view, int light)
 {
     const struct relume_pictures *a = &c->pictures;
     const size_t bytes = a->sample == RELUME_SAMPLE_FLOAT ? 4
@@ -85,7 +84,7 @@ relume_status capture_picture(picture_reader **out, const relume_capture *c, int
     const struct relume_log own = log_of(c, log);
     if (!c->pictures.data)
         return picture_open(out, c->draft.m.view[view].images[light], NULL, limits, &own);
-    const struct picture_array array = array_of(c, view, light);
+    const struct picture_array array = capture_array(c, view, light);
     return array_picture_open(out, &array);
 }
 

@@ -41,6 +41,9 @@ relume_status olat_read_folder(struct draft *out, char **path, const char *folde
 relume_status capture_finish(relume_capture **out, relume_capture *c,
                              const struct relume_capture_params *p);
 
+// One image of a capture of pictures in memory, which lie behind each other.
+struct picture_array capture_array(const relume_capture *capture, int view, int light);
+
 // One image of the capture, wherever it is.
 relume_status capture_picture(picture_reader **out, const relume_capture *capture, int view,
                               int light, const struct relume_limits *limits,

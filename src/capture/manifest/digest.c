@@ -82,12 +82,11 @@ static void digest_file(struct digesting *d, size_t item)
 
 static void digest_array(struct digesting *d, size_t item)
 {
-    static const size_t sizes[] = {
-        [RELUME_SAMPLE_FLOAT] = 4, [RELUME_SAMPLE_8] = 1, [RELUME_SAMPLE_16] = 2};
-    const struct relume_pictures *p = &d->capture->pictures;
-    const size_t size =
-        (size_t)p->width * (size_t)p->height * (size_t)p->channels * sizes[p->sample];
-    const char *middle = (const char *)p->data + item * size + size / 2;
+    const size_t lights = (size_t)d->capture->draft.m.lights;
+    const struct picture_array a =
+        capture_array(d->capture, (int)(item / lights), (int)(item % lights));
+    const size_t size = (size_t)a.width * (size_t)a.height * (size_t)a.channels * a.bytes;
+    const char *middle = (const char *)a.data + size / 2;
     d->image[item] = fnv_of(FNV_START, middle, size - size / 2 < MIDDLE ? size - size / 2 : MIDDLE);
 }
 

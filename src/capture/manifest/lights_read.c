@@ -124,10 +124,13 @@ static relume_status from_lp(struct relume_captured_lights *out, const char *pat
     return status;
 }
 
+enum { NAME = 256 };
+
 // 1: a vector, perhaps behind a name; 0: a blank line or a comment; -1: neither.
-static int parse_line(char *line, struct relume_vec3 *v)
+static int parse_line(char *line, struct relume_vec3 *v, char name[NAME])
 {
-    char rest, name[256];
+    char rest;
+    *name = '\0';
     line[strcspn(line, "#\r\n")] = '\0';
     if (!line[strspn(line, " \t")])
         return 0;
@@ -141,38 +144,55 @@ static int parse_line(char *line, struct relume_vec3 *v)
 }
 
 // A line of a table, "light0001,0.1,0.2,0.9,..." or without the name; the same of its numbers.
-static int parse_row(const char *line, struct relume_vec3 *v)
+static int parse_row(const char *line, struct relume_vec3 *v, char name[NAME])
 {
     double first;
     const char *comma = strchr(line, ',');
+    *name = '\0';
     if (!line[strspn(line, " \t\r\n")])
         return 0;
     if (sscanf(line, "%lf , %lf , %lf", &v->x, &v->y, &v->z) == 3)
         return 1;
+    snprintf(name, NAME, "%.*s", comma ? (int)(comma - line) : 0, line);
     return comma && sscanf(line, "%lf ,", &first) != 1 &&
                    sscanf(comma + 1, "%lf , %lf , %lf", &v->x, &v->y, &v->z) == 3
                ? 1
                : -1;
 }
 
+// Names count where all lights have one.
+static void keep_names(struct relume_captured_lights *out)
+{
+    int named = 0;
+    while (named < out->count && out->name[named])
+        named++;
+    for (int i = 0; named < out->count && i < out->count; i++)
+        mem_free(out->name[i]);
+    if (named < out->count) {
+        mem_free(out->name);
+        out->name = NULL;
+    }
+}
+
 static relume_status read_lines(struct relume_captured_lights *out, FILE *file, const char *path,
                                 const struct relume_log *log)
 {
     const int most = limits_or_default(NULL).max_lights;
-    char line[512];
+    char line[512], name[NAME];
     double stated = 0.0;
     bool first = true;
     const bool table = picture_has_extension(path, ".csv");
     out->direction = mem_array((size_t)most, sizeof *out->direction);
     out->position = mem_array((size_t)most, sizeof *out->position);
-    if (!out->direction || !out->position)
+    out->name = mem_zeroed((size_t)most, sizeof *out->name);
+    if (!out->direction || !out->position || !out->name)
         return RELUME_ENOMEM;
     for (int number = 1; fgets(line, sizeof line, file); number++) {
         struct relume_vec3 v;
         const bool count = first && is_count(line);
         if (count)
             stated = atof(line);
-        int found = count ? 0 : table ? parse_row(line, &v) : parse_line(line, &v);
+        int found = count ? 0 : table ? parse_row(line, &v, name) : parse_line(line, &v, name);
         if (found < 0 && table && first)  // what the columns are called
             found = 0, first = false;
         first &= !count && !found;
@@ -186,9 +206,12 @@ static relume_status read_lines(struct relume_captured_lights *out, FILE *file, 
         if (out->count == most)
             return log_fail(log, RELUME_ELIMIT, "%s: too many lights; expected at most %d", path,
                             most);
+        if (*name && !(out->name[out->count] = mem_text(name)))
+            return RELUME_ENOMEM;
         out->direction[out->count] = unit;
         out->position[out->count++] = v;
     }
+    keep_names(out);
     if (stated > 0.0 && out->count && stated != out->count)
         log_line(log, RELUME_WARNING,
                  "%s: its first line promises %g lights; found %d, which are used", path, stated,

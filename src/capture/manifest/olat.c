@@ -30,8 +30,8 @@ struct layers {
     exr_file *file;
     struct layer *layer;
     int count;
-    int width, height;
-    bool even;  // all parts have one size and plain samples
+    int x, y, width, height;  // the data window
+    bool even;                // all parts have that window and plain samples
 };
 
 // "light0007.R" of a part, or "R" in a part named light0007: its layer and colour; -1: neither.
@@ -73,7 +73,10 @@ static relume_status find_layers(struct layers *l)
     for (int p = 0; p < parts; p++) {
         const struct exr_part_info info = exr_part_info(l->file, p);
         l->even &= info.uniform && info.sample != EXR_SAMPLE_UINT &&
-                   (!p || (info.width == l->width && info.height == l->height));
+                   (!p || (info.width == l->width && info.height == l->height && info.x == l->x &&
+                           info.y == l->y));
+        l->x = info.x;
+        l->y = info.y;
         l->width = info.width;
         l->height = info.height;
         for (int c = 0; c < info.channels; c++) {
@@ -115,11 +118,15 @@ static bool is_exr(const char *path, const struct relume_log *log)
     return is;
 }
 
-static relume_status open_layers(struct layers *l, const char *path,
+typedef relume_status open_exr(exr_file **out, const char *path, const struct relume_reader *from,
+                               const struct relume_limits *limits, const struct relume_log *log);
+
+// `opener` is exr_open, or exr_open_damaged where the header is all that is looked at.
+static relume_status open_layers(struct layers *l, const char *path, open_exr *opener,
                                  const struct relume_limits *limits, const struct relume_log *log)
 {
     *l = (struct layers){0};
-    relume_status status = exr_open(&l->file, path, NULL, limits, log);
+    relume_status status = opener(&l->file, path, NULL, limits, log);
     if (!status)
         status = find_layers(l);
     if (status)
@@ -347,13 +354,15 @@ relume_status olat_open(relume_capture **out, const char *path,
 {
     struct layers l;
     struct relume_captured_lights lights;
-    relume_status status = open_layers(&l, path, p->limits, p->log);
+    relume_status status = open_layers(&l, path, exr_open, p->limits, p->log);
     if (status)
         return status;
     if (!l.even)
-        status =
-            log_fail(p->log, RELUME_EUNSUPPORTED,
-                     "%s: its layers differ in size or type; expected floats of one size", path);
+        status = log_fail(
+            p->log, RELUME_EUNSUPPORTED,
+            "%s: its layers differ in size, data window or type; expected floats of one data "
+            "window",
+            path);
     if (!status)
         status = directions_of(&lights, &l, path, p->log);
     if (!status) {
@@ -369,7 +378,8 @@ relume_status olat_open(relume_capture **out, const char *path,
 bool olat_is_stage(const char *path, const struct relume_log *log)
 {
     struct layers l;
-    if (!is_exr(path, log) || picture_is_relume(path, log) || open_layers(&l, path, NULL, NULL))
+    if (!is_exr(path, log) || picture_is_relume(path, log) ||
+        open_layers(&l, path, exr_open_damaged, NULL, NULL))
         return false;
     const bool is = l.count >= LEAST;
     close_layers(&l);

@@ -194,6 +194,8 @@ relume_status image_stream_fetch(struct image_stream *s, int row, int rows, cons
 {
     const struct picture_info *info = picture_info_of(s->reader);
     const size_t line = (size_t)info->width * (size_t)info->channels, at = (size_t)row * line;
+    if (rows > IMAGE_STREAM_ROWS || !picture_has_rows(info, row, rows))
+        return RELUME_EINVAL;
     let_go(s, at, (size_t)rows * line);
     if (s->kept) {
         *bytes = s->kept + at;

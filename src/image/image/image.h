@@ -52,8 +52,8 @@ struct image_stream {
 relume_status image_stream_open(struct image_stream *stream, picture_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3]);
-// out[row][x][channel]; rows must be asked for from the top on. An input status; `error` has the
-// sentence.
+// out[row][x][channel]. Rows that are not kept come in the order of picture_read_floats; other
+// orders and rows that are not there are RELUME_EINVAL. An input status; `error` has the sentence.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
 // The same rows are not wanted: they are decoded only where those below need it, or are kept.
 relume_status image_stream_skip(struct image_stream *stream, int row, int rows);

@@ -373,6 +373,14 @@ relume_status write_image(const char *path, const relume_writer *writer, int wid
             return log_fail(
                 log, RELUME_EINVAL,
                 "%s: unknown image extension; expected .exr, .png, .jpg, .tif, .hdr, ...", path);
+        // OpenImageIO 2.4 frees memory that it never set when its WebP writer refuses a picture.
+        const int longest = 16383;  // libwebp's WEBP_MAX_DIMENSION
+        if (std::string(output->format_name()) == "webp" &&
+            (channels < 3 || width > longest || height > longest))
+            return log_fail(log, RELUME_EINVAL,
+                            "%s: WebP holds pictures in colour of at most %d pixels a side; "
+                            "expected .png, .jpg or .tif",
+                            path, longest);
         ImageSpec spec(width, height, channels, type);
         spec["CompressionQuality"] = 95;
         spec["jpeg:subsampling"] = "4:4:4";  // colour edges of paintings survive

@@ -173,21 +173,61 @@ const struct picture_info *picture_info_of(const picture_reader *reader)
     return &reader->info;
 }
 
+bool picture_has_rows(const struct picture_info *info, int row, int rows)
+{
+    return row >= 0 && rows >= 1 && row < info->height && rows <= info->height - row;
+}
+
+// Decoders that go from the top on take no notice of `row`: they would give others.
+static const char *why_not_now(const picture_reader *reader, int row, int rows, bool bytes)
+{
+    const struct picture_info *info = &reader->info;
+    if (bytes != info->bytes)
+        return "its samples are of the other type";
+    if (!picture_has_rows(info, row, rows))
+        return "it has no such rows";
+    if (!info->jumps && !reader->broken && row != reader->next)
+        return "its rows can only be read from the top on, once each";
+    return NULL;
+}
+
+static relume_status begin_read(picture_reader *reader, int row, int rows, bool bytes)
+{
+    reader->misuse = why_not_now(reader, row, rows, bytes);
+    return reader->misuse ? RELUME_EINVAL : reader->broken;
+}
+
+static relume_status end_read(picture_reader *reader, int rows, relume_status status)
+{
+    if (!reader->info.jumps) {
+        reader->broken = status;
+        reader->next += rows;
+    }
+    return status;
+}
+
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out)
 {
-    return reader->format->read_floats(reader, row, rows, out);
+    const relume_status status = begin_read(reader, row, rows, false);
+    return status ? status
+                  : end_read(reader, rows, reader->format->read_floats(reader, row, rows, out));
 }
 
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out)
 {
-    return reader->format->read_bytes(reader, row, rows, out);
+    const relume_status status = begin_read(reader, row, rows, true);
+    return status ? status
+                  : end_read(reader, rows, reader->format->read_bytes(reader, row, rows, out));
 }
 
 relume_status picture_turn(picture_reader *reader, int page, const struct relume_limits *limits)
 {
-    if (reader->format->turn)
-        return reader->format->turn(reader, page, limits);
-    return page ? RELUME_ENOTFOUND : RELUME_OK;
+    if (!reader->format->turn)
+        return page ? RELUME_ENOTFOUND : RELUME_OK;
+    reader->next = 0;
+    reader->broken = RELUME_OK;
+    reader->misuse = NULL;
+    return reader->format->turn(reader, page, limits);
 }
 
 static relume_status exif_notes(const picture_reader *of, struct relume_exif *out,
@@ -247,7 +287,7 @@ relume_status picture_need_colour(const picture_reader *reader, const char *path
 
 const char *picture_error(const picture_reader *reader)
 {
-    return reader->format->error(reader);
+    return reader->misuse ? reader->misuse : reader->format->error(reader);
 }
 
 void picture_close(picture_reader **reader)

@@ -33,10 +33,14 @@ struct picture_array {
 relume_status array_picture_open(picture_reader **out, const struct picture_array *array);
 const struct picture_info *picture_info_of(const picture_reader *reader);
 // Code values of `rows` rows from `row` on, out[row][x][channel]: as they are from files of bytes;
-// as floats from all others, integers map to [0, 1]. Rows must be asked for from the top on, once
-// each. No log: threads that read must not speak; picture_error has the sentence.
+// as floats from all others, integers map to [0, 1]. With `info.jumps` rows come in any order and
+// again. Without it they come from the top on, once each. RELUME_EINVAL for another order, for rows
+// that are not there and for the other type: nothing is written, and the next rows can be read.
+// After an input status or RELUME_ENOMEM a reader without `info.jumps` fails alike from then on.
+// No log: threads that read must not speak; picture_error has the sentence.
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
+bool picture_has_rows(const struct picture_info *info, int row, int rows);
 // Another page of a file that has several (TIFF), counted from 0; the reader's info becomes that
 // page's, and its rows are asked for from the top on. RELUME_ENOTFOUND where there is no such page;
 // no log, as above.

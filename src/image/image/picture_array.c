@@ -34,8 +34,11 @@ static relume_status read_floats(picture_reader *reader, int row, int rows, floa
     if (reader->info.floats)
         memcpy(out, from, n * sizeof *out);
     else
-        for (size_t i = 0; i < n; i++)
-            out[i] = (float)((const uint16_t *)from)[i] / 65535.0f;
+        for (size_t i = 0; i < n; i++) {
+            uint16_t code;  // which a program may have put at any address
+            memcpy(&code, from + i * sizeof code, sizeof code);
+            out[i] = (float)code / 65535.0f;
+        }
     return RELUME_OK;
 }
 

@@ -34,6 +34,10 @@ struct picture_reader {
     struct picture_info info;
     struct infile *exif;  // NULL, or the file `path`, for its notes: only the module knows EXIF
     const char *path;
+    // Kept by picture.c.
+    int next;              // row that comes next where rows do not jump
+    relume_status broken;  // why no further rows can come there
+    const char *misuse;    // NULL, or what was wrong with the last request
 };
 
 // What a file is; NULL where it cannot be read.

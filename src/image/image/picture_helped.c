@@ -181,8 +181,8 @@ static void make_whole(struct picture_answer *answer)
 {
     struct picture_info *info = &answer->info;
     struct relume_exif *notes = &answer->notes;
-    bool *const bools[] = {&info->bytes,  &info->floats,  &info->linear,  &notes->linear,
-                           &notes->bytes, &notes->floats, &notes->profile};
+    bool *const bools[] = {&info->bytes,   &info->floats, &info->linear,  &info->jumps,
+                           &notes->linear, &notes->bytes, &notes->floats, &notes->profile};
     for (size_t i = 0; i < sizeof bools / sizeof *bools; i++)
         helper_bool(bools[i]);
     make_likely(notes);

@@ -15,7 +15,7 @@ struct picture_info {
     bool bytes;      // 8-bit integers: picture_read_bytes works
     bool floats;     // floating point: values do not end at 1
     bool linear;     // float samples, or an integer file that says it is linear
-    bool jumps;      // rows may be left out
+    bool jumps;      // rows may be read in any order, left out and read again
     char other[96];  // "", or the names of the channels, where none of them is colour
 };
 

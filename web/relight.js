@@ -16,7 +16,7 @@ export class Relighter {
         this.version = 0;
         this.batches = [];
         this.buffer = device.gl.createBuffer();
-        // lights whose numbers have room in a block: few of many planes on telephones
+        // lights whose numbers fit in a block: few of many planes on telephones
         this.most = Math.max(1, Math.floor(device.gl.getParameter(device.gl.MAX_UNIFORM_BLOCK_SIZE) / (16 * this.stride)));
         this.samples = null;
         this.count = 0;

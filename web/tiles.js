@@ -1,5 +1,5 @@
 // tiles.js - tiles of a view: loaded when wanted, decoded by the browser, relit when lights change,
-// forgotten when others need the room
+// forgotten when others need the memory
 import { Failure, loadBytes } from './load.js';
 import { Recent } from './recent.js';
 

@@ -78,7 +78,7 @@ struct relume_publish_report {
 };
 
 // Publishes `count` files, whatever relume_open or relume_baked_open opens, as the folder `site`:
-// whole or not at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no
+// whole or not at all. `reports` (may be NULL) is an array of `count`. RELUME_EINVAL (no
 // file, no name; a folder that is not empty, without `force` or that relume did not make), an input
 // status, RELUME_EUNFIT (a size or PSNR that cannot be reached), RELUME_EUNSUPPORTED (slabs around
 // an object; baked objects of wavelets, of views apart or too large for a page), RELUME_EIO,

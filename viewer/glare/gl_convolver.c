@@ -34,7 +34,7 @@ static struct gl_convolver plan(const struct gl *gl, const struct relume_psf_geo
     return c;
 }
 
-static bool has_room(const struct gl *gl, const struct gl_convolver *c, int field)
+static bool fits_card(const struct gl *gl, const struct gl_convolver *c, int field)
 {
     const double side = 2.0 * c->reach + 1, vec4 = 4 * sizeof(float);
     const double planes = 2.0 * c->size[0] * c->size[1] * 2 * sizeof(float);
@@ -95,7 +95,7 @@ relume_status gl_convolver_create(struct gl_convolver *c, const struct gl *gl,
                                   bool *fits, const struct relume_log *log)
 {
     *c = plan(gl, shape, view, width, height);
-    *fits = has_room(gl, c, shape->field);
+    *fits = fits_card(gl, c, shape->field);
     if (!*fits) {
         *c = (struct gl_convolver){0};
         return RELUME_OK;

@@ -18,7 +18,7 @@ struct gl_fft {
 };
 
 // The least length of at least n that can be transformed, at least 64: 4, 5, 6 or 8 times a power
-// of two. 0 when the card's groups have no room for such a line.
+// of two. 0 when the card's groups have no memory for such a line.
 int gl_fft_length(const struct gl *gl, int n);
 
 // Lines of complex numbers (two floats) in buffer binding 0: `lines` of them from `first` on, in

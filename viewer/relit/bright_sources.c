@@ -9,7 +9,7 @@
 #include "relit/gl_relighter_parts.h"
 #include "relit/moving.h"
 
-static relume_status need_room(struct gl_relighter *r, const struct relit_view *v)
+static relume_status need_targets(struct gl_relighter *r, const struct relit_view *v)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < 2; i++)
@@ -90,7 +90,7 @@ static relume_status add_one(struct gl_relighter *r, struct relit_view *v,
 
 relume_status bright_sources_relight(struct gl_relighter *r, struct relit_view *v)
 {
-    relume_status status = need_room(r, v);
+    relume_status status = need_targets(r, v);
     for (int i = 0; !status && i < r->lights; i++)
         if (gl_relighter_is_environment(r->light[i].kind))
             status = add_one(r, v, &r->light[i]);

@@ -56,7 +56,7 @@ static void release(struct gl_relighter *r, struct relit_view *v)
 }
 
 // Views that this frame does not use leave, the longest unused first, until `bytes` more fit.
-static void make_room(struct gl_relighter *r, size_t bytes)
+static void free_bytes(struct gl_relighter *r, size_t bytes)
 {
     int oldest;
     while ((oldest = budget_excess(&r->memory, bytes)) >= 0)
@@ -67,7 +67,7 @@ static relume_status keep(struct gl_relighter *r, int view, const struct relume_
 {
     struct relit_view *v = &r->view[view];
     const size_t bytes = gl_relighter_view_bytes(codes);
-    make_room(r, bytes);
+    free_bytes(r, bytes);
     v->present = true;
     budget_set(&r->memory, view, bytes);
     relume_status status = target_create(&v->relit, r->gl, codes->width, codes->height, r->log);

@@ -24,7 +24,7 @@ relume_status gl_relighter_begin(struct gl_relighter *relighter, const struct re
 // What lights point at may have gone: nothing that was kept for them is used again.
 void gl_relighter_forget(struct gl_relighter *relighter);
 // The linear texture of `view`, valid during this frame. Views that this frame has not asked for
-// may leave the graphics memory to make room.
+// may leave the graphics memory for others.
 relume_status gl_relighter_view(const struct target **out, struct gl_relighter *relighter,
                                 int view);
 

@@ -18,7 +18,7 @@ struct micro {
     struct program gather, between;
     int side;              // of the pictures that `gather` and `picture` are for
     GLuint picture, list;  // buffers
-    int listed;            // pixels that the list has room for
+    int listed;            // pixels that the list holds
     float whole;           // of the pictures' pixels
 };
 

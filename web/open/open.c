@@ -87,7 +87,7 @@ static uint64_t bytes_of_view(const struct opened *o)
                         : (uint64_t)o->file.levels.planes * relume_storage_bytes(info->storage));
 }
 
-// Views that were asked for last stay, as many as there is room for.
+// Views that were asked for last stay, as many as there is memory for.
 static relume_status open_codes(const struct relume_codes **out, struct opened *o, int view)
 {
     const uint64_t bytes = bytes_of_view(o);

@@ -451,14 +451,14 @@ static bool grow(struct relume_buffer *b, size_t size)
 {
     if (size <= b->room)
         return true;
-    const size_t room = size > SIZE_MAX / 2 ? size : 2 * size;
-    unsigned char *data = mem_resize(b->data, room, 1);
+    const size_t capacity = size > SIZE_MAX / 2 ? size : 2 * size;
+    unsigned char *data = mem_resize(b->data, capacity, 1);
     if (!data) {
         errno = ENOMEM;
         return false;
     }
     b->data = data;
-    b->room = room;
+    b->room = capacity;
     return true;
 }
 

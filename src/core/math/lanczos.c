@@ -15,7 +15,7 @@ static const double NOTHING = 1e-12;
 
 struct space {
     size_t n;
-    int most, count;  // vectors: room for, made
+    int most, count;  // vectors: that fit, made
     double *q;        // [most][n], orthonormal
     double *h;        // [most][most]: the matrix in that basis
     double *next;     // [n]

@@ -35,7 +35,7 @@ static bool in_range(const struct relume_image *a, const struct relume_image *b,
             (p->mask->channels == 1 && p->mask->width == a->width && p->mask->height == a->height));
 }
 
-// Room for pictures to go on mirrored beyond their borders, a degree where they are that large.
+// Margin for pictures to go on mirrored beyond their borders, a degree where they are that large.
 static int with_margin(int side, double ppd)
 {
     return fft_good_size(side + smaller_of(side, (int)ceil(ppd)));

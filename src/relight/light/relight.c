@@ -35,14 +35,14 @@ struct pass {
     float **book;  // [books] -> [codes][3]: with codebooks, what their vectors add
 };
 
-// What a worker writes on the way.
-struct room {
+// Scratch memory of one worker.
+struct scratch {
     float sum[3][CHUNK];       // by channel, so that the kernels write in a row
     float shown[CHUNK];        // one light, before it is made linear
     float part[CHUNK];         // a group of planes, or a colour
     float distant[3 * CHUNK];  // environments of the display domain
     float rgb[3 * CHUNK];      // what becomes 8 bits
-    float near[];              // near_lights_room
+    float near[];              // near_lights_scratch
 };
 
 struct job {
@@ -61,8 +61,8 @@ struct job {
     const relume_weight_grid *grid;  // borrowed, or made
     relume_weight_grid *made;
     struct near_lights near;
-    char *room;  // [workers] of room_size
-    size_t room_size;
+    char *scratch;  // [workers] of scratch_size
+    size_t scratch_size;
     // Display domain: environments are relit from linear codes of their own, ...
     struct job *distant;
     struct relume_light *lights;  // or, without those, every environment by the captured lights
@@ -83,7 +83,7 @@ static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
     }
 }
 
-// Linear domain: all lights into one pass. `one` has room for one light's weights.
+// Linear domain: all lights into one pass. `one` holds one light's weights.
 static void add_light(struct pass *pass, const relume_coder *coder,
                       const struct relume_light *light, float *one)
 {
@@ -312,13 +312,13 @@ static void dot_channel(const struct job *job, const struct pass *pass, int chan
 
 // Display domain: every light is decoded and made linear before it is added.
 static void sum_displayed(const struct job *job, int channel, size_t first, size_t n,
-                          struct room *room)
+                          struct scratch *scratch)
 {
-    float *sum = room->sum[channel], *codes = room->shown;
+    float *sum = scratch->sum[channel], *codes = scratch->shown;
     memset(sum, 0, n * sizeof *sum);
     for (int p = 0; p < job->count; p++) {
         const struct pass *pass = &job->passes[p];
-        dot_channel(job, pass, channel, first, n, codes, room->part);
+        dot_channel(job, pass, channel, first, n, codes, scratch->part);
         for (size_t i = 0; i < n; i++)
             sum[i] += pass->rgb[channel] * curve_decode(&job->curve, codes[i]);
     }
@@ -330,66 +330,67 @@ static size_t chunk_size(const struct job *job, size_t first)
     return pixels - first < CHUNK ? pixels - first : CHUNK;
 }
 
-static void interleave(float *rgb, const struct room *room, size_t n)
+static void interleave(float *rgb, const struct scratch *scratch, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
-            rgb[3 * i + c] = room->sum[c][i];
+            rgb[3 * i + c] = scratch->sum[c][i];
 }
 
 static void relight_distant(const struct job *job, size_t first, size_t n, float *out,
-                            struct room *room)
+                            struct scratch *scratch)
 {
     for (int c = 0; c < 3; c++)
-        dot_channel(job, &job->passes[0], c, first, n, room->sum[c], room->part);
-    interleave(room->distant, room, n);
-    keep_above_zero(room->distant, n);
+        dot_channel(job, &job->passes[0], c, first, n, scratch->sum[c], scratch->part);
+    interleave(scratch->distant, scratch, n);
+    keep_above_zero(scratch->distant, n);
     for (size_t i = 0; i < 3 * n; i++)
-        out[i] += room->distant[i];
+        out[i] += scratch->distant[i];
 }
 
 // out[n][3]: linear values of the pixels from `first` on.
 static void relight_pixels(const struct job *job, size_t first, size_t n, float *out,
-                           struct room *room)
+                           struct scratch *scratch)
 {
     for (int c = 0; c < 3; c++) {
         if (job->linear)
-            dot_channel(job, &job->passes[0], c, first, n, room->sum[c], room->part);
+            dot_channel(job, &job->passes[0], c, first, n, scratch->sum[c], scratch->part);
         else
-            sum_displayed(job, c, first, n, room);
+            sum_displayed(job, c, first, n, scratch);
     }
-    interleave(out, room, n);
+    interleave(out, scratch, n);
     if (job->guard)
         keep_above_zero(out, n);
     if (job->near.count)
-        near_lights_add(&job->near, first, n, out, room->near);
+        near_lights_add(&job->near, first, n, out, scratch->near);
     if (job->distant)
-        relight_distant(job->distant, first, n, out, room);
+        relight_distant(job->distant, first, n, out, scratch);
 }
 
-static struct room *room_of(const struct job *job, int worker)
+static struct scratch *scratch_of(const struct job *job, int worker)
 {
-    return (struct room *)(void *)(job->room + (size_t)worker * job->room_size);
+    return (struct scratch *)(void *)(job->scratch + (size_t)worker * job->scratch_size);
 }
 
 static void relight_chunk(void *context, size_t item, int worker)
 {
     const struct job *job = context;
     const size_t first = item * CHUNK;
-    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3, room_of(job, worker));
+    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3,
+                   scratch_of(job, worker));
 }
 
 static void relight_chunk_rgba8(void *context, size_t item, int worker)
 {
     const struct job *job = context;
     const size_t first = item * CHUNK, n = chunk_size(job, first);
-    struct room *room = room_of(job, worker);
+    struct scratch *scratch = scratch_of(job, worker);
     if (job->words) {
         job->kernels->look_up(job->out_rgba8 + first, n, job->codes->index[0] + first, job->words);
         return;
     }
-    relight_pixels(job, first, n, room->rgb, room);
-    byte_code(job->out_rgba8 + first, room->rgb, n, job->coder);
+    relight_pixels(job, first, n, scratch->rgb, scratch);
+    byte_code(job->out_rgba8 + first, scratch->rgb, n, job->coder);
 }
 
 static bool is_below_horizon(const struct relume_coder_info *info, const struct relume_light *light)
@@ -556,7 +557,7 @@ static void end_job(struct job *job)
     mem_free(job->lights);
     mem_free(job->coder);
     mem_free(job->words);
-    mem_free(job->room);
+    mem_free(job->scratch);
 }
 
 // What the vectors of a single codebook have of the environments joins their table.
@@ -642,9 +643,9 @@ static relume_status run_job(struct job *job, int threads, void (*chunk)(void *,
 {
     const size_t pixels = (size_t)job->codes->width * (size_t)job->codes->height;
     const size_t chunks = (pixels + CHUNK - 1) / CHUNK, most = (size_t)thread_count(threads);
-    job->room_size = sizeof(struct room) + near_lights_room(&job->near) * sizeof(float);
-    job->room = mem_array(most < chunks ? most : chunks, job->room_size);
-    if (!job->room)
+    job->scratch_size = sizeof(struct scratch) + near_lights_scratch(&job->near) * sizeof(float);
+    job->scratch = mem_array(most < chunks ? most : chunks, job->scratch_size);
+    if (!job->scratch)
         return RELUME_ENOMEM;
     thread_for(threads, chunks, chunk, job);
     return RELUME_OK;

@@ -79,7 +79,7 @@ static void *take_memory(struct parts *p, size_t count)
     return at;
 }
 
-static relume_status make_room(struct parts *p)
+static relume_status map_parts(struct parts *p)
 {
     const struct relume_mesh *m = p->run->s.mesh;
     const size_t t = m->triangle_count, v = m->vertex_count;
@@ -590,7 +590,7 @@ relume_status run_in_parts(struct relume_mesh *out, struct run *r, size_t memory
     log_line(log, RELUME_NOTE,
              "the mesh is simplified in parts of about %zu triangles, for want of memory",
              p.capacity);
-    relume_status status = make_room(&p);
+    relume_status status = map_parts(&p);
     if (!status)
         status = run_all(&p);
     if (!status) {

@@ -266,10 +266,10 @@ static bool copy(struct infile *s, int to)
 int infile_descriptor(struct infile *s)
 {
     if (!s->from.read) {
-        const int file = hold(s), twin = file < 0 ? -1 : fcntl(file, F_DUPFD_CLOEXEC, 3);
+        const int file = hold(s), copy = file < 0 ? -1 : fcntl(file, F_DUPFD_CLOEXEC, 3);
         if (file >= 0)
             let_go(s);
-        return twin;
+        return copy;
     }
     const int memory = channel_memory((size_t)s->size);
     if (memory >= 0 && !copy(s, memory)) {

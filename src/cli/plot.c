@@ -341,9 +341,9 @@ static void put_labels(struct drawing *d, const struct plot_point *const *sorted
         const double x = page_x(d, sorted[i]->x), y = page_y(d, sorted[i]->y);
         take_rectangle(d, x - RADIUS - 1.0, y - RADIUS - 1.0, x + RADIUS + 1.0, y + RADIUS + 1.0);
     }
-    for (int pass = 0; pass < 2; pass++)
+    for (int turn = 0; turn < 2; turn++)
         for (int i = 0; i < d->plot->points; i++)
-            if (sorted[i]->on_hull == !pass && !is_said(d, sorted, i))
+            if (sorted[i]->on_hull == !turn && !is_said(d, sorted, i))
                 put_label(d, sorted[i]);
 }
 

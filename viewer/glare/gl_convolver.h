@@ -1,4 +1,4 @@
-// gl_convolver.h - a frame convolved with an eye's pattern by compute passes
+// gl_convolver.h - a frame convolved with an eye's pattern by compute shaders
 #ifndef VIEWER_GL_CONVOLVER_H
 #define VIEWER_GL_CONVOLVER_H
 

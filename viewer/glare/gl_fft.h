@@ -1,4 +1,4 @@
-// gl_fft.h - Fourier transforms of lines in a buffer, by compute passes
+// gl_fft.h - Fourier transforms of lines in a buffer, by compute shaders
 #ifndef VIEWER_GL_FFT_H
 #define VIEWER_GL_FFT_H
 
@@ -28,7 +28,7 @@ struct gl_fft_lines {
     int stride[3];
     bool inverse;
 };
-// In place, not normalised. Later passes see the result. RELUME_ESYSTEM.
+// In place, not normalised. Later shaders see the result. RELUME_ESYSTEM.
 relume_status gl_fft_run(struct gl_fft *fft, const struct gl *gl, const struct gl_fft_lines *lines,
                          const struct relume_log *log);
 void gl_fft_destroy(struct gl_fft *fft, const struct gl *gl);

@@ -1,4 +1,4 @@
-// gl_glare.h - a frame as an eye sees it, by compute passes of OpenGL 4.3
+// gl_glare.h - a frame as an eye sees it, by compute shaders of OpenGL 4.3
 #ifndef VIEWER_GL_GLARE_H
 #define VIEWER_GL_GLARE_H
 

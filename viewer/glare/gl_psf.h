@@ -1,4 +1,4 @@
-// gl_psf.h - the pattern of one point source by compute passes: what relume_psf_update does
+// gl_psf.h - the pattern of one point source by compute shaders: what relume_psf_update does
 #ifndef VIEWER_GL_PSF_H
 #define VIEWER_GL_PSF_H
 

@@ -10,7 +10,7 @@
 // Of the scene, of the objects, and of the backs of what is lit from both sides.
 enum { CARD_SCENE, CARD_OBJECTS, CARD_BACKS, CARD_TREES };
 
-// Buffers that passes see, by binding.
+// Buffers that shaders see, by binding.
 enum { CARD_NODES, CARD_SENTS, CARD_LEAVES, CARD_BLOCKS };
 
 // Zeroed it is nothing.

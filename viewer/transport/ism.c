@@ -1,4 +1,4 @@
-// ism.c - light gathered from virtual lights with imperfect shadow maps, by compute passes
+// ism.c - light gathered from virtual lights with imperfect shadow maps, by compute shaders
 #include "transport/ism.h"
 
 #include "cli/program/say.h"

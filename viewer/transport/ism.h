@@ -1,4 +1,4 @@
-// ism.h - light gathered from virtual lights with imperfect shadow maps, by compute passes. Twins:
+// ism.h - light gathered from virtual lights with imperfect shadow maps, by compute shaders. Twins:
 // world/transport/instant.c, world/transport/virtual.c, world/transport/maps.c.
 //
 // It differs from these in this: virtual lights are leaves of the trees of points, drawn by how

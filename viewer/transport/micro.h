@@ -1,4 +1,4 @@
-// micro.h - light gathered by small pictures of what surrounds each place, by compute passes.
+// micro.h - light gathered by small pictures of what surrounds each place, by compute shaders.
 // Twin: world/transport/micro.c.
 //
 // It differs from that file in this: points of objects return light as their material does even

@@ -1,7 +1,7 @@
 // lanczos.c - leading eigenvectors by Krylov projection (Lanczos 1950)
 //
 // Every new vector is made orthogonal to all before it, twice, which costs little beside products
-// with a matrix of many pixels, and keeps what single passes lose to rounding (Parlett, Kahan).
+// with a matrix of many pixels, and keeps what single steps lose to rounding (Parlett, Kahan).
 #include "core/math/lanczos.h"
 
 #include "core/base/memory.h"

@@ -122,9 +122,9 @@ static void travel(struct slices *s, double distance_mm)
         s->turn[2 * i + 1] = (float)sin(phase);
     }
     fft2d_rows(s->fft, s->spectrum, 0, s->n, give_row, s);
-    const struct fft2d_pass pass = {
+    const struct fft2d_step column_step = {
         .to = s->n, .end = s->n, .visit = turn_phases, .context = s, .back = true};
-    fft2d_pass_columns(s->fft, s->spectrum, &pass);
+    fft2d_step_columns(s->fft, s->spectrum, &column_step);
     fft2d_rows_back(s->fft, s->spectrum, 0, s->n, take_row, s);
 }
 

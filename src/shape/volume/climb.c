@@ -1,6 +1,6 @@
 // climb.c - the surface through boxes of a grid: adaptive skeleton climbing
 //
-// Two passes over blocks, in layers: their boxes first, then, since neighbours know theirs, loops
+// Two rounds over blocks, in layers: their boxes first, then, since neighbours know theirs, loops
 // and triangles. Vertices are named by their edge until all are known, then numbered in order.
 #include "shape/volume/climb.h"
 
@@ -53,7 +53,7 @@ static int32_t *state_at(const struct climb *k, int x, int y, int z)
            (size_t)x;
 }
 
-// ---------------------------------------------------------------- first pass: boxes
+// ---------------------------------------------------------------- first round: boxes
 
 static bool keep_owners(struct climb *k, struct layer *l, const struct block *b)
 {
@@ -127,7 +127,7 @@ static void climb_layer(void *context, size_t z, int worker)
     }
 }
 
-// ---------------------------------------------------------------- second pass: triangles
+// ---------------------------------------------------------------- second round: triangles
 
 static struct neighbours neighbours_of(const struct climb *k, const int at[3])
 {
@@ -293,14 +293,14 @@ static relume_status climb_volume(struct relume_mesh *out, struct relume_isosurf
                                   struct climb *k)
 {
     const struct signs *g = k->g;
-    if (!signs_pass(g, (size_t)k->blocks[2], climb_layer, k, 0.0, 0.6))
+    if (!signs_round(g, (size_t)k->blocks[2], climb_layer, k, 0.0, 0.6))
         return RELUME_ECANCEL;
     for (int z = 0; z < k->blocks[2]; z++)
         if (k->layer[z].failed)
             return RELUME_ENOMEM;
     for (int i = 0; i < g->threads; i++)
         faces_begin(&k->worker[i].faces, g, k->share);
-    if (!signs_pass(g, (size_t)k->blocks[2], put_layer, k, 0.6, 0.9))
+    if (!signs_round(g, (size_t)k->blocks[2], put_layer, k, 0.6, 0.9))
         return RELUME_ECANCEL;
     return finish(out, report, k);
 }

@@ -35,7 +35,7 @@ static relume_status spread(struct relume_image *image, unsigned char *known)
     const int width = image->width, height = image->height;
     const size_t n = (size_t)width * (size_t)height;
     unsigned char *before = mem_array(n, 1);
-    for (int pass = 0; before && pass < SPREAD; pass++) {
+    for (int step = 0; before && step < SPREAD; step++) {
         memcpy(before, known, n);
         for (size_t i = 0; i < n; i++) {
             const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);

@@ -110,7 +110,7 @@ static struct relume_image relit(const struct file *f, const struct relume_light
 
 // ---------------------------------------------------------------- one pixel
 
-// Stored coefficients of one pixel, and room for the functions that they belong to.
+// Stored coefficients of one pixel, and memory for the functions that they belong to.
 struct pixel {
     const relume_coder *coder;
     relume_coder *own;  // or NULL: that of a file

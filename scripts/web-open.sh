@@ -76,7 +76,7 @@ parts="web/open/open.c web/open/absent.c web/core/absent.c \
     $(of src/format/lossy av1_read disparity entropy lossy slopes) \
     $(of src/format/codebook book) $(of src/image/geometry camera geometry print) src/exchange/foreign/source.c \
     $(of src/format/pack format functions learnt read_books read_coded read_halved read_header read_mask read_parts read_slabs read_view reader words) \
-    $(of src/site/publish functions layers levels scene_json text)"
+    $(of src/site/publish functions layers levels published_json text)"
 ours=$(compile "$own" $parts)
 echo 'mergeInto(LibraryManager.library, { page_read: function () {} });' >"$work/page.js"
 emcc -O2 $ours $theirs --js-library "$work/page.js" --no-entry -s STANDALONE_WASM=1 -s ALLOW_MEMORY_GROWTH=1 \

@@ -56,15 +56,15 @@ export class Comparison {
 
     // Keeps how the file is seen now.
     keep() {
-        const { viewer } = this, layer = viewer.layerOf(viewer.scene, viewer.basis, viewer.tiles);
+        const { viewer } = this, layer = viewer.layerOf(viewer.published, viewer.basis, viewer.tiles);
         layer.relighter.setLights(viewer.lights);
         this.replace({ ...viewer.seen(), layer, lights: viewer.lights, memo: {} });
     }
 
     // Another file of the same kind, seen from the same place; its lights are this one's.
     async open(address) {
-        const { viewer } = this, layer = await viewer.openLayer(address), { title, name } = layer.scene;
-        const unlike = unlikeness(viewer.scene, layer.scene), look = { ...viewer.seen(), layer };
+        const { viewer } = this, layer = await viewer.openLayer(address), { title, name } = layer.published;
+        const unlike = unlikeness(viewer.published, layer.published), look = { ...viewer.seen(), layer };
         if (unlike) {
             closeLook(look, viewer);
             throw new Failure(`${title || name || 'The other file'} cannot be compared with this one: ${unlike}`);

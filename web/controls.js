@@ -98,8 +98,8 @@ export class Controls {
         this.remove = button('remove', 'Remove this light (Delete)', () => actions.removeLight());
         this.counter = make('output', { 'aria-label': 'Light' });
         const lens = viewer.isSlab ? this.lens() : [];
-        const { panorama } = viewer.scene, around = panorama && Math.hypot(...panorama.center) > 0;  // lamps are moved around the origin
-        const distance = viewer.scene.takesLamps && !around ? [labelled('Distance', this.distance)] : [];
+        const { panorama } = viewer.published, around = panorama && Math.hypot(...panorama.center) > 0;  // lamps are moved around the origin
+        const distance = viewer.published.takesLamps && !around ? [labelled('Distance', this.distance)] : [];
         const planet = viewer.isPanorama ? [this.planet()] : [];
         this.node = make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             this.ball.node,
@@ -125,7 +125,7 @@ export class Controls {
     }
 
     lens() {
-        const { grid } = this.viewer.stage, { slab } = this.viewer.scene;
+        const { grid } = this.viewer.stage, { slab } = this.viewer.published;
         const wide = Math.max(grid[2] - grid[0], grid[3] - grid[1]), deep = slab.uv_plane_z - slab.st_plane_z;
         this.aperture = slider('Width of the lens', 0, wide, wide / 100 || 1, (value) => this.actions.set('aperture', value));
         this.focus = slider('Focus', slab.st_plane_z - deep, slab.st_plane_z + 0.6 * deep, Math.abs(deep) / 200,

@@ -1,6 +1,6 @@
-// drop.js - a relume file from the visitor's disk as the scene of a page; nothing is sent anywhere
+// drop.js - a relume file from the visitor's disk as the picture of a page; nothing is sent anywhere
 import { Failure, loadBytes } from './load.js';
-import { checkScene } from './scene.js';
+import { checkPublished } from './published.js';
 import { readFiles } from './openwork.js';
 
 export const isRelume = (file) => /\.exr$/i.test(file.name);
@@ -38,7 +38,7 @@ class LocalFile {
 
     // The codes of a tile, [layers][height][width][4]: bytes, or halves.
     async codes(tile) {
-        const { layers, halves } = this.scene, view = this.indexOf(tile.key.split('/')[0]);
+        const { layers, halves } = this.published, view = this.indexOf(tile.key.split('/')[0]);
         const size = 4 * layers * tile.width * tile.height * (halves ? 2 : 1);
         const bytes = await this.ask('tile', { view, level: tile.level, x: tile.x, y: tile.y, size });
         return halves ? new Uint16Array(bytes.buffer) : bytes;
@@ -46,7 +46,7 @@ class LocalFile {
 
     // The depth or the mask of a view, as its PNG would be.
     async picture(view, mask) {
-        const { width, height } = this.scene;
+        const { width, height } = this.published;
         const { data, range } = await this.ask('picture', { view: this.indexOf(view.name), mask, size: 4 * width * height });
         if (!mask)
             [view.depth_min, view.depth_step] = range;
@@ -55,7 +55,7 @@ class LocalFile {
 
     // What shadows or highlights of a view move by, eight numbers a pixel.
     async model(view) {
-        const { width, height } = this.scene, size = 32 * width * height;
+        const { width, height } = this.published, size = 32 * width * height;
         return new Float32Array((await this.ask('model', { view: this.indexOf(view.name), size })).buffer);
     }
 
@@ -64,15 +64,15 @@ class LocalFile {
     close() { this.worker.terminate(); }
 }
 
-// The scene of a file, as loadScene has it; a Failure says why there is none. `home`: where relume-open.wasm lies.
+// Opens a file as loadPublished does; a Failure says why it cannot. `home`: where relume-open.wasm lies.
 export async function openFile(file, home) {
     const local = new LocalFile();
     try {
         const bytes = await loadBytes(new URL('relume-open.wasm', home).href);
-        const opened = await local.ask('open', { bytes, from: file }), scene = JSON.parse(opened.json);
-        local.scene = checkScene(scene, document.baseURI);
-        Object.assign(scene, { local, halves: !opened.bytes });
-        return scene;
+        const opened = await local.ask('open', { bytes, from: file }), published = JSON.parse(opened.json);
+        local.published = checkPublished(published, document.baseURI);
+        Object.assign(published, { local, halves: !opened.bytes });
+        return published;
     } catch (error) {
         local.close();
         throw error;

@@ -56,16 +56,16 @@ export class RelumeView extends Stage {
     }
 
     // A view of a file from the visitor's disk.
-    static of(scene) {
+    static of(published) {
         const view = document.createElement('relume-view');
-        view.opened = scene;
+        view.opened = published;
         return view;
     }
 
     // Shows such a file in place of this one, which stays where that fails.
     async show(file) {
         this.say(`Opening ${file.name}.`);
-        const scene = await openFile(file, RelumeView.home).finally(() => this.say('')), view = RelumeView.of(scene);
+        const published = await openFile(file, RelumeView.home).finally(() => this.say('')), view = RelumeView.of(published);
         view.className = this.className;
         view.style.cssText = this.style.cssText;
         this.replaceWith(view);
@@ -110,13 +110,13 @@ export class RelumeView extends Stage {
         if (!this.isConnected || !this.root.contains(viewer.canvas))
             return viewer.close();
         this.viewer = viewer;
-        const title = viewer.scene.title || viewer.scene.name || 'Picture';
+        const title = viewer.published.title || viewer.published.name || 'Picture';
         this.surface.setAttribute('aria-label', `${title}: a picture whose light can be moved. Arrow keys move the light; ` +
                                                 'press the question mark for all keys.');
         this.lighting = viewer.projection === 'planar';
         this.controls = new Controls(viewer, this);
         this.frame.append(this.controls.node);
-        this.openNotes(new Notes(viewer.scene), profileOfNote, viewer.scene.notes ? `${viewer.scene.base}notes.json` : null);
+        this.openNotes(new Notes(viewer.published), profileOfNote, viewer.published.notes ? `${viewer.published.base}notes.json` : null);
         this.showMode();
         this.hint.textContent = this.lighting ? 'Drag across the picture to move the light'
             : viewer.isSlab ? 'Drag to walk around, move the light by its ball' : 'Drag to look around, move the light by its ball';
@@ -225,7 +225,7 @@ export class RelumeView extends Stage {
         this.viewer.changed();
     }
 
-    save() { return this.savePicture(this.viewer.scene.name); }
+    save() { return this.savePicture(this.viewer.published.name); }
     help() { return this.helpWith(KEYS); }
 
     // ------------------------------------------------------------ pointers, keys, dropped files

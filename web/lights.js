@@ -122,7 +122,7 @@ export function spread(lights, basis) {
 }
 
 // The light of a page that nobody has moved: raking, from the upper left.
-export function firstLight(scene) {
-    const panorama = !['planar', 'slab'].includes(scene.projection);
+export function firstLight(published) {
+    const panorama = !['planar', 'slab'].includes(published.projection);
     return { kind: 'dir', direction: unit(panorama ? [-0.5, 0.8, 0.33] : [-0.62, 0.55, 0.56]), rgb: [1, 1, 1] };
 }

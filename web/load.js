@@ -1,10 +1,10 @@
 // load.js - files of a published folder, from a server or from a disk
 //
-// On http(s) a file is fetched. Pages on file:// may not fetch: there every file FOO has a twin FOO.js,
+// On http(s) a file is fetched. Pages on file:// may not fetch: there every file FOO has a script copy FOO.js,
 // a script that calls relume.put with the same bytes in base64. Where fetching fails for another
-// origin's rules the twin is tried too.
+// origin's rules the script copy is tried too.
 
-const waiting = new Map();  // address of a file -> what waits for its twin
+const waiting = new Map();  // address of a file -> what waits for its script copy
 
 export class Failure extends Error {}
 
@@ -15,7 +15,7 @@ function bytesOf(base64) {
     return bytes;
 }
 
-// Called by a twin while its script runs.
+// Called by a script copy while it runs.
 export function put(name, base64) {
     const script = document.currentScript;
     const address = script ? script.src.replace(/\.js$/, '') : name;

@@ -1,4 +1,4 @@
-// main.js - window.relume: what twins call, and what a page can ask of its first picture
+// main.js - window.relume: what script copies call, and what a page can ask of its first picture
 import { put } from './load.js';
 import { putCore } from './wasm.js';
 import { putMore } from './more.js';

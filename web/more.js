@@ -19,13 +19,13 @@ export function loadMore(home) {
 // What one file has of it.
 export class More {
     // `told`: changed(), failed(error).
-    constructor(device, scene, basis, home, told) {
-        Object.assign(this, { device, scene, basis, home, told, parts: null, gone: false, begun: false });
+    constructor(device, published, basis, home, told) {
+        Object.assign(this, { device, published, basis, home, told, parts: null, gone: false, begun: false });
     }
 
     // There is a picture: what moves may load, which is more than that needs.
     begin() {
-        if (!this.begun && this.scene.moves)
+        if (!this.begun && this.published.moves)
             this.told.changed();
         this.begun = true;
     }
@@ -35,8 +35,8 @@ export class More {
         if (!this.asked) {
             this.asked = true;
             loadMore(this.home).then(({ NearLamps, Moving }) => {
-                const { device, scene, basis, told } = this, near = new NearLamps(device, scene, basis, told);
-                this.parts = { near, moving: scene.moves ? new Moving(device, scene, basis, told) : null };
+                const { device, published, basis, told } = this, near = new NearLamps(device, published, basis, told);
+                this.parts = { near, moving: published.moves ? new Moving(device, published, basis, told) : null };
                 told.changed();
             }).catch((error) => {
                 this.gone = true;
@@ -48,13 +48,13 @@ export class More {
 
     // What moves the shadows or highlights of a view: null where they do not move, or not yet.
     movingOf(view) {
-        const parts = this.scene.moves && this.begun && this.need();
+        const parts = this.published.moves && this.begun && this.need();
         return parts && parts.moving.isReady(view) ? parts.moving : null;
     }
 
     // Whether that will come.
     awaits(view) {
-        return !!this.scene.moves && !this.gone && !(this.parts && this.parts.moving.isSettled(view));
+        return !!this.published.moves && !this.gone && !(this.parts && this.parts.moving.isSettled(view));
     }
 
     close() {

@@ -33,8 +33,8 @@ function modelOf(pictures, { scale, offset }, gloss) {
 }
 
 // How rays lie in a view's coordinates. Twin: set_up of src/relight/shadow/stage.c.
-function raysOf(scene, view) {
-    const { width, height, projection, window: w, slab, panorama } = scene;
+function raysOf(published, view) {
+    const { width, height, projection, window: w, slab, panorama } = published;
     const through = (min, max, u, v, distance, rays, eye) => {
         const scale = [Math.abs(distance) * width / (max[0] - min[0]), -Math.abs(distance) * height / (max[1] - min[1])];
         return { rays, eye, axis: distance > 0 ? -1 : 1, scale, pixel: 1 / Math.max(scale[0], -scale[1]),
@@ -115,14 +115,14 @@ function spansOf(far, width, height, closes) {
 // ---------------------------------------------------------------- on the graphics card
 
 export class Moving {
-    constructor(device, scene, basis, told) {
-        Object.assign(this, { device, scene, basis, told });
-        this.gloss = scene.moves === 'highlights';
+    constructor(device, published, basis, told) {
+        Object.assign(this, { device, published, basis, told });
+        this.gloss = published.moves === 'highlights';
         this.views = new Recent();    // name -> { state, ... }
         this.reached = new Recent();  // captured lights on tiles
         this.reachedBytes = 0;
         this.scratch = new Map();
-        this.between = basis.pictures(this.gloss ? scene.basis : { interpolant: 'delaunay' });
+        this.between = basis.pictures(this.gloss ? published.basis : { interpolant: 'delaunay' });
     }
 
     // The captured lights around a direction, [{ light, direction, weight }]; none where it is one of them.
@@ -157,7 +157,7 @@ export class Moving {
     }
 
     async load(name) {
-        const entry = { state: 'loading' }, view = this.scene.views.find((v) => v.name === name);
+        const entry = { state: 'loading' }, view = this.published.views.find((v) => v.name === name);
         this.views.set(name, entry);
         try {
             Object.assign(entry, { state: 'still' }, await this.upload(view));
@@ -170,29 +170,29 @@ export class Moving {
     }
 
     async modelOf(view) {
-        const { scene } = this;
-        if (scene.local)
-            return scene.local.model(view);
+        const { published } = this;
+        if (published.local)
+            return published.local.model(view);
         if (!view.moving)
             return null;
-        const address = `${scene.base}${view.name}/moving.bin`, parts = partsOf(await loadBytes(address), 3, address);
+        const address = `${published.base}${view.name}/moving.bin`, parts = partsOf(await loadBytes(address), 3, address);
         const pictures = await Promise.all(parts.map((part) => decodePicture(part, 'image/jpeg').catch(() => {
             throw new Failure(`${view.name}/moving.bin is damaged`);
         })));
-        if (pictures.some((p) => p.width !== scene.width || p.height !== scene.height))
+        if (pictures.some((p) => p.width !== published.width || p.height !== published.height))
             throw new Failure(`${view.name}/moving.bin has another size than scene.json says`);
         return modelOf(pictures.map(pixelsOf), view.moving, this.gloss);
     }
 
     // The textures of a view.
     async upload(view) {
-        const { gl } = this.device, { width, height } = this.scene, n = width * height;
-        const model = await this.modelOf(view), depth = this.gloss || !model ? null : pixelsOf(await loadPicture(this.scene, view, false));
+        const { gl } = this.device, { width, height } = this.published, n = width * height;
+        const model = await this.modelOf(view), depth = this.gloss || !model ? null : pixelsOf(await loadPicture(this.published, view, false));
         if (!model)
             return {};
-        const levels = this.scene.levels.length, stage = this.gloss ? {} : raysOf(this.scene, view), own = {};
+        const levels = this.published.levels.length, stage = this.gloss ? {} : raysOf(this.published, view), own = {};
         if (!this.gloss) {
-            const { far, low, high, leastSide } = surfaceOf(stage, depth, view, (this.scene.window || { camera_z: 0 }).camera_z);
+            const { far, low, high, leastSide } = surfaceOf(stage, depth, view, (this.published.window || { camera_z: 0 }).camera_z);
             const { span, front, columns, rows } = spansOf(far, width, height, stage.rays >= CYLINDER), surface = new Float32Array(2 * n);
             for (let i = 0; i < n; i++)
                 surface.set([far[i], Math.min(model[NUMBERS * i], BACKGROUND)], 2 * i);
@@ -233,7 +233,7 @@ export class Moving {
     }
 
     placeOf(tile) {
-        const { tile: size, levels } = this.scene, level = levels[tile.level];
+        const { tile: size, levels } = this.published, level = levels[tile.level];
         return { origin: [tile.x * size, tile.y * size], most: [level.width, level.height], grain: 2 ** tile.level };
     }
 
@@ -274,7 +274,7 @@ export class Moving {
 
     // What of a tile and its view all shaders take that add to a picture of one light, which draw(target) makes.
     shown(tile, view, draw) {
-        const { gamma, between, curve } = this.scene, relit = this.target('relit', tile.width, tile.height), { origin, grain } = this.placeOf(tile);
+        const { gamma, between, curve } = this.published, relit = this.target('relit', tile.width, tile.height), { origin, grain } = this.placeOf(tile);
         this.device.begin(relit);
         draw(relit);
         return { relit: { texture: relit.texture }, colours: { texture: view.colours }, matte: { texture: view.matte }, origin, grain,
@@ -294,7 +294,7 @@ export class Moving {
     // The same of a light that stands near; `near`: what knows how lamps send (near.js).
     addNear(lit, tile, light, near, draw) {
         const { gl } = this.device, view = this.views.get(tile.view), { rays, eye } = view.stage, shown = this.shown(tile, view, draw);
-        const lamps = light.kind === 'panel' ? patchesOf(light, PATCHES) : [light], { lights } = this.scene.basis, own = this.stageOf(view);
+        const lamps = light.kind === 'panel' ? patchesOf(light, PATCHES) : [light], { lights } = this.published.basis, own = this.stageOf(view);
         const program = this.device.program(`moves near ${rays}`, () => nearShadowShader(rays));
         this.directions = this.directions || this.texture(lights.length / 3, 1, gl.RGBA32F,
             Float32Array.from({ length: 4 * lights.length / 3 }, (_, i) => (i % 4 < 3 ? lights[3 * Math.floor(i / 4) + i % 4] : 0)));
@@ -318,7 +318,7 @@ export class Moving {
     }
 
     glossOf(around) {
-        const { gl } = this.device, { lights } = this.scene.basis, texels = new Float32Array(4 * lights.length / 3);
+        const { gl } = this.device, { lights } = this.published.basis, texels = new Float32Array(4 * lights.length / 3);
         around.forEach((a, i) => texels.set([...a.direction, a.weight], 4 * i));
         gl.deleteTexture(this.lights || null);
         this.lights = this.texture(lights.length / 3, 1, gl.RGBA32F, texels);

@@ -159,13 +159,13 @@ function nodeDirection(row, column, columns, rows, poleY) {
 }
 
 export class NearLamps {
-    constructor(device, scene, basis, told) {
-        Object.assign(this, { device, scene, basis, told, table: null, taken: null, triangles: null, depths: new Map(), between: scene.between === 'linear' });
+    constructor(device, published, basis, told) {
+        Object.assign(this, { device, published, basis, told, table: null, taken: null, triangles: null, depths: new Map(), between: published.between === 'linear' });
     }
 
     // Weights of one column and row of a table, as Relighter.block has them for one.
     putWeights(texels, i, size, weights) {
-        const { planes, layers, scale, offset, guide } = this.scene, layer = 4 * size;
+        const { planes, layers, scale, offset, guide } = this.published, layer = 4 * size;
         for (let c = 0; c < 3; c++) {
             let added = 0;
             for (let k = 0; k < planes; k++) {
@@ -181,7 +181,7 @@ export class NearLamps {
 
     // What directions are to the file: tables of weights, and of where light is taken from.
     makeTables() {
-        const { scene, basis } = this, { hemispherical, pole, lights } = scene.basis, depth = 3 * scene.layers + (scene.guide ? 2 : 1);
+        const { published, basis } = this, { hemispherical, pole, lights } = published.basis, depth = 3 * published.layers + (published.guide ? 2 : 1);
         const rows = hemispherical ? DOWN + 1 : 2 * DOWN + 2, columns = 4 * DOWN + 1, n = rows * columns, captured = lights.length / 3;
         const size = this.between ? captured : n, texels = new Float32Array(4 * size * depth), taken = new Float32Array(4 * n);
         for (let i = 0; i < n; i++) {
@@ -226,13 +226,13 @@ export class NearLamps {
 
     // Uniforms of what a lamp sends.
     sent(lamp) {
-        const { hemispherical, pole } = this.scene.basis;
+        const { hemispherical, pole } = this.published.basis;
         return { taken: { texture: this.taken }, hemisphere: hemispherical ? 1 : 0, pole_y: pole === 'y' ? 1 : 0, lamp_axis: lamp.axis || [0, 0, -1],
                  half_angle: lamp.half || 0, falls: lamp.nofall ? 0 : 1, is_patch: lamp.kind === 'patch' ? 1 : 0 };
     }
 
     async loadDepth(view) {
-        const { gl } = this.device, { width, height } = this.scene, picture = await loadPicture(this.scene, view, false);
+        const { gl } = this.device, { width, height } = this.published, picture = await loadPicture(this.published, view, false);
         const scale = Math.min(1, MOST_DEPTH / Math.max(width, height)), texture = this.device.texture(gl.NEAREST);
         const small = scale === 1 ? picture : await createImageBitmap(picture, { resizeWidth: Math.max(1, Math.round(width * scale)),
             resizeHeight: Math.max(1, Math.round(height * scale)), resizeQuality: 'pixelated', premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
@@ -246,7 +246,7 @@ export class NearLamps {
 
     // Whether lamps can be shown in a view now; where its surface is loads by and by.
     ready(name) {
-        const view = this.scene.views.find((v) => v.name === name);
+        const view = this.published.views.find((v) => v.name === name);
         if (!this.table)
             this.makeTables();
         if (view.depth && !this.depths.has(name)) {
@@ -269,12 +269,12 @@ export class NearLamps {
 
     // The lamps that a near light comes to.
     lampsOf(light) {
-        return light.kind !== 'panel' ? [light] : patchesOf(light, this.scene.window ? patchSide(light, this.scene.window) : MOST_SIDE);
+        return light.kind !== 'panel' ? [light] : patchesOf(light, this.published.window ? patchSide(light, this.published.window) : MOST_SIDE);
     }
 
     // How the file is seen by a view: uniforms.
     seenBy(view) {
-        const { window: w, slab, panorama } = this.scene;
+        const { window: w, slab, panorama } = this.published;
         if (w)
             return { window: [...w.min, ...w.max], from: [0, 0, w.camera_z], plane: 0, parallel: w.camera === 'perspective' ? 0 : 1 };
         if (slab)
@@ -284,15 +284,15 @@ export class NearLamps {
 
     // Adds a lamp's light to a tile's.
     add(target, tile, lamp) {
-        const { scene, device } = this, { layers, guide, projection } = scene, step = 2 ** tile.level, view = scene.views.find((v) => v.name === tile.view);
+        const { published, device } = this, { layers, guide, projection } = published, step = 2 ** tile.level, view = published.views.find((v) => v.name === tile.view);
         const program = device.program(`near ${layers} ${guide} ${projection} ${this.between}`, () => nearShader(layers, guide, projection, this.between));
         device.begin(target, { clear: false, add: 'rgb' });
         program.set({
             codes: { texture: tile.codes, array: true }, table: { texture: this.table, array: true }, depth: { texture: this.depths.get(view.name) || null },
-            ...this.seenBy(view), size: [scene.width, scene.height],
-            tile: [tile.x * scene.tile * step, tile.y * scene.tile * step, step],
+            ...this.seenBy(view), size: [published.width, published.height],
+            tile: [tile.x * published.tile * step, tile.y * published.tile * step, step],
             inverse: view.depth ? [view.depth_min, view.depth_step] : [0, 0],
-            'display.curve': { int: scene.curve }, 'display.gamma': scene.gamma, lamp: lamp.position, colour: lamp.rgb, ...this.sent(lamp), ...(this.between ? this.triangleSet() : {}),
+            'display.curve': { int: published.curve }, 'display.gamma': published.gamma, lamp: lamp.position, colour: lamp.rgb, ...this.sent(lamp), ...(this.between ? this.triangleSet() : {}),
         });
         program.draw([0, 0, 1, 1]);
     }

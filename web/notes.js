@@ -77,10 +77,10 @@ const short = (x) => String(+x.toPrecision(4));
 
 
 export class Notes {
-    // An empty list on a scene, or on a file of which `file` says what notes must fit.
-    constructor(scene, file = { width: scene.width, height: scene.height, views: scene.views && scene.views.length }) {
-        this.file = { name: `${scene.name || 'picture'}.exr`, ...file };
-        this.mm = scene.mm_per_pixel > 0 ? scene.mm_per_pixel : 0;
+    // An empty list on a published file, or on one of which `file` says what notes must fit.
+    constructor(published, file = { width: published.width, height: published.height, views: published.views && published.views.length }) {
+        this.file = { name: `${published.name || 'picture'}.exr`, ...file };
+        this.mm = published.mm_per_pixel > 0 ? published.mm_per_pixel : 0;
         this.page = { '@context': ['http://www.w3.org/ns/anno.jsonld', { relume: 'urn:relume:' }], id: '#notes',
                       type: 'AnnotationPage', 'relume:file': this.file, items: [] };
         this.all = [];

@@ -14,7 +14,7 @@ export function readFiles() {
     }
 
     function place(text) {
-        const bytes = new TextEncoder().encode(`${text}\0`), at = core.open_room(bytes.length);
+        const bytes = new TextEncoder().encode(`${text}\0`), at = core.open_allocate(bytes.length);
         bytesAt(at, bytes.length).set(bytes);
         return at;
     }
@@ -57,7 +57,7 @@ export function readFiles() {
             opened = core.open_file(place(file.name), file.size);
             if (!opened || textAt(core.open_why(opened)))
                 fail();
-            return { json: textAt(core.open_scene(opened)), bytes: !!core.open_is_bytes(opened) };
+            return { json: textAt(core.open_json(opened)), bytes: !!core.open_is_bytes(opened) };
         },
         tile({ view, level, x, y, size }) {
             const at = core.open_tile(opened, view, level, x, y);

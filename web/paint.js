@@ -4,14 +4,14 @@ import { loadPicture } from './tiles.js';
 import { maskShader, tileShader } from './tileshaders.js';
 
 // The level whose texels are as large as pixels, or smaller; `scale` is pixels a texel of level 0.
-export function levelFor(scene, scale) {
+export function levelFor(published, scale) {
     const level = Math.floor(Math.log2(1 / Math.max(scale, 1e-9)) + 0.02);
-    return Math.min(Math.max(level, 0), scene.levels.length - 1);
+    return Math.min(Math.max(level, 0), published.levels.length - 1);
 }
 
 export class Painter {
-    constructor(device, scene, tiles, relighter, changed) {
-        Object.assign(this, { device, scene, tiles, relighter, changed });
+    constructor(device, published, tiles, relighter, changed) {
+        Object.assign(this, { device, published, tiles, relighter, changed });
         this.masks = new Map();
         this.complete = true;
         this.rough = false;       // shadows and highlights will move that do not yet
@@ -20,7 +20,7 @@ export class Painter {
 
     // The tiles of a level that touch a part of the picture (level 0 pixels).
     touching(level, part) {
-        const size = this.scene.tile * 2 ** level, out = [];
+        const size = this.published.tile * 2 ** level, out = [];
         const most = [this.tiles.columns(level) - 1, this.tiles.rows(level) - 1];
         const from = [0, 1].map((i) => Math.max(0, Math.floor(part[i] / size)));
         const to = [0, 1].map((i) => Math.min(most[i], Math.floor((part[i + 2] - 1e-6) / size)));
@@ -34,8 +34,8 @@ export class Painter {
 
     // What shall be drawn of `level` and, where tiles of it are missing, of coarser ones; coarse first.
     chosen(view, level, part) {
-        const last = this.scene.levels.length - 1, lists = [];
-        const early = [...new Set([last, Math.max(this.scene.first, level)])].filter((l) => l > level)
+        const last = this.published.levels.length - 1, lists = [];
+        const early = [...new Set([last, Math.max(this.published.first, level)])].filter((l) => l > level)
             .flatMap((l) => this.touching(l, part).map(([x, y]) => this.tiles.get(view, l, x, y)));
         // the first picture is loaded before the full one
         const waiting = early.some((tile) => tile.state !== 'ready' && tile.state !== 'failed');
@@ -71,7 +71,7 @@ export class Painter {
     mask(view) {
         if (!this.masks.has(view.name)) {
             this.masks.set(view.name, null);
-            loadPicture(this.scene, view, true).then((picture) => {
+            loadPicture(this.published, view, true).then((picture) => {
                 const { gl } = this.device, texture = this.device.texture(gl.LINEAR);
                 gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
                 this.masks.set(view.name, texture);
@@ -100,7 +100,7 @@ export class Painter {
 
     // `target` gets the view's `kind` (relight.js) at `level`; `map.cache`, if any: isNews.
     paint(target, view, kind, level, map, part) {
-        const { gl } = this.device, { tile: size, width, height } = this.scene;
+        const { gl } = this.device, { tile: size, width, height } = this.published;
         const tiles = this.chosen(view.name, level, part).map((tile) => [tile, this.textureOf(tile, kind)])
             .filter(([, texture]) => texture);
         if (map.cache && !this.isNews(map.cache, view, kind, tiles))

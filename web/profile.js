@@ -62,7 +62,7 @@ class Normals {
     }
 
     isOutside(x, y) {
-        const { width, height } = this.viewer.scene;
+        const { width, height } = this.viewer.published;
         return x >= width || y >= height || x + BLOCK <= 0 || y + BLOCK <= 0;
     }
 
@@ -92,10 +92,10 @@ async function heightsOfNormals(rows, viewer) {
     });
 }
 
-async function heightsOfDepth(rows, { scene }) {
-    const [view] = scene.views, bytes = await loadBytes(`${scene.base}${view.name}/depth.png`);
+async function heightsOfDepth(rows, { published }) {
+    const [view] = published.views, bytes = await loadBytes(`${published.base}${view.name}/depth.png`);
     const { width, height, data } = pixelsOf(await decodePicture(bytes, 'image/png'));
-    const size = (scene.window.max[0] - scene.window.min[0]) / width;
+    const size = (published.window.max[0] - published.window.min[0]) / width;
     let first = null;
     const pixel = (x, y) => {
         const i = 4 * (y * width + x), code = x >= 0 && y >= 0 && x < width && y < height ? 256 * data[i] + data[i + 1] : 0;
@@ -123,10 +123,10 @@ function colours(rows, viewer) {
 
 // The profile of a line: { names, rows: [{ along, place, values }] }, values being null where nothing is known.
 async function profileOf(viewer, places) {
-    const rows = layOut(places), { scene } = viewer, flat = scene.projection === 'planar' && scene.window.camera === 'orthographic';
+    const rows = layOut(places), { published } = viewer, flat = published.projection === 'planar' && published.window.camera === 'orthographic';
     if (!flat)
         colours(rows, viewer);
-    else if (scene.views[0].depth)
+    else if (published.views[0].depth)
         await heightsOfDepth(rows, viewer);
     else
         await heightsOfNormals(rows, viewer);

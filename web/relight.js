@@ -7,16 +7,16 @@ let relighters = 0;
 
 export class Relighter {
     // `more`: for lamps that stand near, and for what moves between captured lights (more.js).
-    constructor(device, scene, basis, more) {
-        Object.assign(this, { device, scene, basis, more });
-        this.stride = strideOf(scene.layers, scene.guide);
+    constructor(device, published, basis, more) {
+        Object.assign(this, { device, published, basis, more });
+        this.stride = strideOf(published.layers, published.guide);
         this.lamps = [];
         this.moved = null;
         this.key = relighters++;  // of its pictures of tiles
         this.version = 0;
         this.batches = [];
         this.buffer = device.gl.createBuffer();
-        // lights whose numbers have room in a block: few of many planes on telephones
+        // lights whose numbers fit in a block: few of many planes on telephones
         this.most = Math.max(1, Math.floor(device.gl.getParameter(device.gl.MAX_UNIFORM_BLOCK_SIZE) / (16 * this.stride)));
         this.samples = null;
         this.count = 0;
@@ -24,7 +24,7 @@ export class Relighter {
 
     // Numbers of a light in the shader's block; the quantiser goes into the weights.
     block(out, at, weights, colour) {
-        const { planes, layers, scale, offset, guide } = this.scene, stride = planes + 1, last = 4 * 3 * layers;
+        const { planes, layers, scale, offset, guide } = this.published, stride = planes + 1, last = 4 * 3 * layers;
         for (let c = 0; c < 3; c++) {
             let added = 0;
             for (let k = 0; k < planes; k++) {
@@ -52,7 +52,7 @@ export class Relighter {
 
     // In linear files all lights are one: their weights are added.
     joined(lights) {
-        const sum = new Float32Array(this.basis.size), stride = this.scene.planes + 1;
+        const sum = new Float32Array(this.basis.size), stride = this.published.planes + 1;
         for (const light of lights)
             for (let i = 0; i < sum.length; i++)
                 sum[i] += light.weights[i] * light.colour[Math.floor(i / stride)];
@@ -73,7 +73,7 @@ export class Relighter {
 
     // What a light is relit by: where planes are coded of what is linear between captured lights, by these.
     partsOf(direction, weights, colour) {
-        if (this.scene.between !== 'linear')
+        if (this.published.between !== 'linear')
             return [{ weights, colour }];
         this.pictures = this.pictures || this.basis.pictures({ interpolant: 'delaunay' });
         return this.pictures.around(direction).map((a) => (
@@ -81,7 +81,7 @@ export class Relighter {
     }
 
     batchesOf(lights) {
-        const sums = this.scene.curve === 1 && lights.length ? this.joined(lights) : lights;
+        const sums = this.published.curve === 1 && lights.length ? this.joined(lights) : lights;
         return this.blocks(sums, SIZES.filter((size) => size <= this.most).find((size, i, sizes) => size >= sums.length || i + 1 === sizes.length));
     }
 
@@ -105,7 +105,7 @@ export class Relighter {
 
     draw(program, tile, batch) {
         program.set({ codes: { texture: tile.codes, array: true }, lights: { int: batch.count },
-                      'display.curve': { int: this.scene.curve }, 'display.gamma': this.scene.gamma });
+                      'display.curve': { int: this.published.curve }, 'display.gamma': this.published.gamma });
         this.bind(program, batch);
         program.draw([0, 0, 1, 1]);
     }
@@ -117,7 +117,7 @@ export class Relighter {
     }
 
     drawBatch(target, tile, batch, i) {
-        const { layers, guide } = this.scene;
+        const { layers, guide } = this.published;
         const program = this.device.program(`relight ${layers} ${guide} ${batch.most}`, () => relightShader(layers, guide, batch.most));
         this.device.begin(target, { clear: i === 0, add: i > 0 && 'rgb' });
         this.draw(program, tile, batch);
@@ -157,7 +157,7 @@ export class Relighter {
     samplesBlock() {
         if (this.samples)
             return this.samples;
-        const all = this.scene.basis.lights, n = all.length / 3, count = Math.min(n, this.mostSamples), picked = [];
+        const all = this.published.basis.lights, n = all.length / 3, count = Math.min(n, this.mostSamples), picked = [];
         for (let i = 0; i < count; i++) {
             const at = 3 * Math.floor((i + 0.5) * n / count), direction = all.slice(at, at + 3);
             picked.push({ weights: this.basis.weights(direction).weights, colour: direction });
@@ -170,7 +170,7 @@ export class Relighter {
     surface(tile) {
         if (tile.surface)
             return tile.surface;
-        const { gl } = this.device, { layers, guide } = this.scene, surface = this.device.target(tile.width, tile.height);
+        const { gl } = this.device, { layers, guide } = this.published, surface = this.device.target(tile.width, tile.height);
         surface.albedo = this.device.texture(gl.LINEAR);
         gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA16F, tile.width, tile.height);
         gl.bindFramebuffer(gl.FRAMEBUFFER, surface.frame);

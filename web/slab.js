@@ -26,30 +26,30 @@ function cellsBetween(lines, from, to) {
 }
 
 export class Slab {
-    constructor(scene, painter, device) {
-        Object.assign(this, { scene, painter, device });
-        this.u = linesOf(scene.views.map((v) => v.uv[0]));
-        this.v = linesOf(scene.views.map((v) => v.uv[1]));
-        this.at = new Map(scene.views.map((view, i) =>
+    constructor(published, painter, device) {
+        Object.assign(this, { published, painter, device });
+        this.u = linesOf(published.views.map((v) => v.uv[0]));
+        this.v = linesOf(published.views.map((v) => v.uv[1]));
+        this.at = new Map(published.views.map((view, i) =>
             [`${nearestOf(this.u, view.uv[0])},${nearestOf(this.v, view.uv[1])}`, i]));
-        this.views = new Views(device, scene, painter);
+        this.views = new Views(device, published, painter);
         this.grid = [this.u[0], this.v[0], this.u[this.u.length - 1], this.v[this.v.length - 1]];
     }
 
     // Where an eye begins: the middle of the cameras.
     middle() {
         const { grid } = this;
-        return [(grid[0] + grid[2]) / 2, (grid[1] + grid[3]) / 2, this.scene.slab.uv_plane_z];
+        return [(grid[0] + grid[2]) / 2, (grid[1] + grid[3]) / 2, this.published.slab.uv_plane_z];
     }
 
     fit(width, height) {
-        const { scene } = this, scale = Math.min(width / scene.width, height / scene.height);
-        return { x: scene.width / 2, y: scene.height / 2, scale };
+        const { published } = this, scale = Math.min(width / published.width, height / published.height);
+        return { x: published.width / 2, y: published.height / 2, scale };
     }
 
     // What all cells of a frame share; null for an eye that sees nothing.
     frameOf(target, camera) {
-        const { slab, width, height } = this.scene, { at, eye } = camera;
+        const { slab, width, height } = this.published, { at, eye } = camera;
         const reach = (slab.uv_plane_z - eye[2]) / (slab.st_plane_z - eye[2]);
         const ahead = (eye[2] - slab.st_plane_z) * (slab.uv_plane_z - slab.st_plane_z) > 0;
         const left = target.width / 2 - at.x * at.scale, top = target.height / 2 - at.y * at.scale;
@@ -84,7 +84,7 @@ export class Slab {
 
     // All cameras within the lens, averaged.
     drawLens(target, kind, shared, camera) {
-        const { uv_plane_z: uvZ, st_plane_z: stZ } = this.scene.slab, { u, v } = this, radius = camera.aperture / 2;
+        const { uv_plane_z: uvZ, st_plane_z: stZ } = this.published.slab, { u, v } = this, radius = camera.aperture / 2;
         const m = (camera.focus - stZ) / (uvZ - stZ), eye = camera.eye;
         const step = (lines, i) => [i > 0 ? lines[i] - lines[i - 1] : 1e30, i + 1 < lines.length ? lines[i + 1] - lines[i] : 1e30];
         const near = (lines, i, at) => lines.length === 1 ||
@@ -104,7 +104,7 @@ export class Slab {
 
     draw(target, kind, camera) {
         const shared = this.frameOf(target, camera);
-        this.views.setLevel(Math.min(levelFor(this.scene, camera.at.scale) + camera.coarser, this.scene.levels.length - 1));
+        this.views.setLevel(Math.min(levelFor(this.published, camera.at.scale) + camera.coarser, this.published.levels.length - 1));
         this.device.begin(target);
         if (!shared)
             return;

@@ -1,5 +1,5 @@
 // tiles.js - tiles of a view: loaded when wanted, decoded by the browser, relit when lights change,
-// forgotten when others need the room
+// forgotten when others need the memory
 import { Failure, loadBytes } from './load.js';
 import { Recent } from './recent.js';
 
@@ -30,16 +30,16 @@ export function decodePicture(bytes, type, options = {}) {
 }
 
 // The depth or the mask of a view.
-export async function loadPicture(scene, view, mask) {
-    if (scene.local)
-        return scene.local.picture(view, mask);
-    return decodePicture(await loadBytes(`${scene.base}${view.name}/${mask ? 'mask' : 'depth'}.png`), 'image/png');
+export async function loadPicture(published, view, mask) {
+    if (published.local)
+        return published.local.picture(view, mask);
+    return decodePicture(await loadBytes(`${published.base}${view.name}/${mask ? 'mask' : 'depth'}.png`), 'image/png');
 }
 
 // All tiles of one file. `changed` is called when one has come, `failed` with a sentence.
 export class Tiles {
-    constructor(device, scene, { changed, failed }) {
-        Object.assign(this, { device, scene, changed, failed });
+    constructor(device, published, { changed, failed }) {
+        Object.assign(this, { device, published, changed, failed });
         this.tiles = new Recent();
         this.queue = [];
         this.loading = 0;
@@ -49,15 +49,15 @@ export class Tiles {
         this.more = null;  // what only some files and lights need (more.js)
     }
 
-    columns(level) { return Math.ceil(this.scene.levels[level].width / this.scene.tile); }
-    rows(level) { return Math.ceil(this.scene.levels[level].height / this.scene.tile); }
+    columns(level) { return Math.ceil(this.published.levels[level].width / this.published.tile); }
+    rows(level) { return Math.ceil(this.published.levels[level].height / this.published.tile); }
 
     // A tile; it is loaded by and by unless it is there. What is asked for first comes first.
     get(view, level, x, y) {
         const key = `${view}/${level}_${x}_${y}`;
         let tile = this.tiles.use(key);
         if (!tile) {
-            const { width, height } = this.scene.levels[level], size = this.scene.tile;
+            const { width, height } = this.published.levels[level], size = this.published.tile;
             tile = { key, view, level, x, y, width: Math.min(size, width - x * size), height: Math.min(size, height - y * size),
                      state: 'new', codes: null, lit: [], surface: null };
             this.tiles.set(key, tile);
@@ -89,20 +89,20 @@ export class Tiles {
 
     // The pictures of a file of a tile, decoded; among AVIF those that are smaller as JPEG.
     async decoded(tile, avif) {
-        const address = `${this.scene.base}${tile.key}${avif ? '.avif' : ''}.bin`, bytes = await loadBytes(address);
+        const address = `${this.published.base}${tile.key}${avif ? '.avif' : ''}.bin`, bytes = await loadBytes(address);
         this.received += bytes.length;
-        return Promise.all(partsOf(bytes, this.scene.layers, address)
+        return Promise.all(partsOf(bytes, this.published.layers, address)
             .map((part) => decodePicture(part, part[0] === 0xff ? 'image/jpeg' : 'image/avif').catch(() => {
-                throw new Failure(this.scene.pictures === 'avif' ? 'this browser does not decode its AVIF pictures, or they are damaged' : `${tile.key}.bin is damaged`);
+                throw new Failure(this.published.pictures === 'avif' ? 'this browser does not decode its AVIF pictures, or they are damaged' : `${tile.key}.bin is damaged`);
             })));
     }
 
     // Those of its layers: JPEG where there is that and a browser does not decode AVIF.
     async pictures(tile) {
         let pictures = null;
-        if (this.scene.pictures && !this.plain)
+        if (this.published.pictures && !this.plain)
             pictures = await this.decoded(tile, true).catch((error) => {
-                if (this.scene.pictures === 'avif')
+                if (this.published.pictures === 'avif')
                     throw error;
                 this.plain = true;
             });
@@ -113,7 +113,7 @@ export class Tiles {
     }
 
     async load(tile) {
-        const { local } = this.scene;
+        const { local } = this.published;
         tile.state = 'loading';
         this.loading++;
         try {
@@ -131,7 +131,7 @@ export class Tiles {
     }
 
     uploadCodes(tile, codes) {
-        const { gl } = this.device, { layers, halves } = this.scene;
+        const { gl } = this.device, { layers, halves } = this.published;
         tile.codes = this.device.texture(gl.NEAREST, gl.TEXTURE_2D_ARRAY);
         gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, halves ? gl.RGBA16F : gl.RGBA8, tile.width, tile.height, layers);
         gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, tile.width, tile.height, layers, gl.RGBA,
@@ -139,7 +139,7 @@ export class Tiles {
         this.bytes += this.bytesOf(tile);
     }
 
-    bytesOf(tile) { return (this.scene.halves ? 8 : 4) * tile.width * tile.height * this.scene.layers; }
+    bytesOf(tile) { return (this.published.halves ? 8 : 4) * tile.width * tile.height * this.published.layers; }
 
     upload(tile, pictures) {
         const { gl } = this.device;
@@ -159,7 +159,7 @@ export class Tiles {
     forget() {
         if (this.bytes <= MOST_BYTES)
             return;
-        const last = this.scene.levels.length - 1;
+        const last = this.published.levels.length - 1;
         this.tiles.trim(() => this.bytes > 0.8 * MOST_BYTES, (tile) => this.drop(tile),
                         (t) => t.state === 'ready' && t.used < this.clock && t.level < last);
     }

@@ -2,7 +2,7 @@
 import { Device } from './gl.js';
 import { Basis } from './wasm.js';
 import { Failure } from './load.js';
-import { loadScene } from './scene.js';
+import { loadPublished } from './published.js';
 import { Tiles } from './tiles.js';
 import { Relighter } from './relight.js';
 import { Painter } from './paint.js';
@@ -43,33 +43,33 @@ export class Viewer {
         this.ready = new Promise((resolve) => { this.isReady = resolve; });
     }
 
-    // What a page names, or a scene that is open already.
-    async open(address, scene) {
-        const layer = await this.openLayer(address, scene);
+    // Opens the file that a page names, or shows one that is open already.
+    async open(address, published) {
+        const layer = await this.openLayer(address, published);
         Object.assign(this, layer);
-        this.projection = layer.scene.projection;
+        this.projection = layer.published.projection;
         this.reset();
-        this.metering = layer.scene.exposure === undefined;
-        this.exposure = layer.scene.exposure || 0;
+        this.metering = layer.published.exposure === undefined;
+        this.exposure = layer.published.exposure || 0;
         this.draft = true;
         this.resize();
     }
 
     // All that an open file has.
     async openLayer(address, opened) {
-        const scene = opened || await loadScene(address), basis = await Basis.open(scene, this.home);
-        const tiles = new Tiles(this.device, scene, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
-        return this.layerOf(scene, basis, tiles);
+        const published = opened || await loadPublished(address), basis = await Basis.open(published, this.home);
+        const tiles = new Tiles(this.device, published, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
+        return this.layerOf(published, basis, tiles);
     }
 
     // A file under lights of its own.
-    layerOf(scene, basis, tiles) {
-        tiles.more = tiles.more || new More(this.device, scene, basis, this.home, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
-        const relighter = new Relighter(this.device, scene, basis, tiles.more);
-        const painter = new Painter(this.device, scene, tiles, relighter, () => this.invalidate());
-        const stage = scene.projection === 'planar' ? new Planar(scene, painter)
-            : scene.projection === 'slab' ? new Slab(scene, painter, this.device) : new Panorama(scene, painter, this.device);
-        return { scene, basis, tiles, relighter, painter, stage };
+    layerOf(published, basis, tiles) {
+        tiles.more = tiles.more || new More(this.device, published, basis, this.home, { changed: () => this.invalidate(), failed: (error) => this.told.failed(error) });
+        const relighter = new Relighter(this.device, published, basis, tiles.more);
+        const painter = new Painter(this.device, published, tiles, relighter, () => this.invalidate());
+        const stage = published.projection === 'planar' ? new Planar(published, painter)
+            : published.projection === 'slab' ? new Slab(published, painter, this.device) : new Panorama(published, painter, this.device);
+        return { published, basis, tiles, relighter, painter, stage };
     }
 
     get isPanorama() { return this.stage instanceof Panorama; }
@@ -77,13 +77,13 @@ export class Viewer {
 
     // As the page opens.
     reset() {
-        this.lights = [firstLight(this.scene)];
+        this.lights = [firstLight(this.published)];
         this.chosen = 0;
         this.exposure = 0;
         this.tone = 'linear';
         this.pass = 'colour';
         this.aperture = 0;
-        this.focus = this.isSlab ? this.scene.slab.st_plane_z : 0;
+        this.focus = this.isSlab ? this.published.slab.st_plane_z : 0;
         this.eye = this.isSlab ? this.stage.middle() : [0, 0, 0];
         Object.assign(this, { pan: 0, tilt: 0, zoom: 1, look: 'perspective', others: [] });
         this.at = null;  // null: the whole picture
@@ -134,7 +134,7 @@ export class Viewer {
 
     setFraming(at) {
         const scale = at.scale * this.sharpen();
-        this.at = { x: clamp(at.x, 0, this.scene.width), y: clamp(at.y, 0, this.scene.height), scale };
+        this.at = { x: clamp(at.x, 0, this.published.width), y: clamp(at.y, 0, this.published.height), scale };
         this.changed();
     }
 
@@ -228,7 +228,7 @@ export class Viewer {
 
     // Shows what a line says; what it does not name is as the page opens.
     setState(line) {
-        const { values, lights, others, problem } = readState(line, this.scene.takesLamps);
+        const { values, lights, others, problem } = readState(line, this.published.takesLamps);
         this.metering = false;
         this.reset();
         Object.assign(this, { others });
@@ -295,7 +295,7 @@ export class Viewer {
 
     // Of a file that lies where this one does, of another size perhaps.
     camera(layer = this) {
-        const at = this.isPanorama ? null : this.framing(), k = layer.scene.width / this.scene.width;
+        const at = this.isPanorama ? null : this.framing(), k = layer.published.width / this.published.width;
         return { at: at && { x: at.x * k, y: at.y * k, scale: at.scale / k }, eye: this.eye, pan: this.pan,
                  tilt: this.tilt, zoom: this.zoom, planet: this.look !== 'perspective',
                  aperture: this.aperture, focus: this.focus, coarser: this.coarser };
@@ -359,15 +359,15 @@ export class Viewer {
     }
 
     // The whole picture, small, as floats of each kind; null where it is not there yet.
-    small({ scene, painter }, kinds) {
-        const last = scene.levels.length - 1, { width, height } = scene.levels[last];
+    small({ published, painter }, kinds) {
+        const last = published.levels.length - 1, { width, height } = published.levels[last];
         const scale = Math.min(1, MEASURED / Math.max(width, height)), before = painter.complete;
         const target = this.device.target(Math.max(1, Math.round(width * scale)), Math.max(1, Math.round(height * scale)));
         painter.complete = true;
         painter.allowed = Math.max(painter.allowed, 1);
         const out = kinds.map((kind) => {
-            painter.paint(target, scene.views[0], kind, last, { scale: scale * 2 ** -last, left: 0, top: 0 },
-                          [0, 0, scene.width, scene.height]);
+            painter.paint(target, published.views[0], kind, last, { scale: scale * 2 ** -last, left: 0, top: 0 },
+                          [0, 0, published.width, published.height]);
             return this.device.read(target);
         });
         const there = painter.complete;
@@ -382,7 +382,7 @@ export class Viewer {
         const read = this.metering && this.small(look.layer, ['light']);
         if (!read)
             return;
-        const front = this.layerOf(this.scene, this.basis, this.tiles);
+        const front = this.layerOf(this.published, this.basis, this.tiles);
         this.metering = false;
         front.relighter.setLights([{ kind: 'dir', direction: this.isPanorama ? [0, 1, 0] : [0, 0, 1], rgb: [1, 1, 1] }]);
         const exposure = Math.min(meterExposure(read[0]), brightestExposure(this.small(front, ['light'])[0]), 2);
@@ -393,17 +393,17 @@ export class Viewer {
 
     // A square of the first view at full size, as floats of a kind, row 0 at its bottom; waits for its tiles.
     async patch(kind, x, y, side) {
-        const { painter, tiles, scene } = this, part = [Math.max(x, 0), Math.max(y, 0), Math.min(x + side, scene.width), Math.min(y + side, scene.height)];
+        const { painter, tiles, published } = this, part = [Math.max(x, 0), Math.max(y, 0), Math.min(x + side, published.width), Math.min(y + side, published.height)];
         const target = this.device.target(side, side);
         try {
             for (;;) {
                 painter.complete = true;
                 painter.allowed = Infinity;
-                painter.paint(target, scene.views[0], kind, 0, { scale: 1, left: -x, top: -y }, part);
+                painter.paint(target, published.views[0], kind, 0, { scale: 1, left: -x, top: -y }, part);
                 tiles.end();
                 if (painter.complete)
                     return this.device.read(target);
-                if (painter.touching(0, part).some(([i, j]) => tiles.get(scene.views[0].name, 0, i, j).state === 'failed'))
+                if (painter.touching(0, part).some(([i, j]) => tiles.get(published.views[0].name, 0, i, j).state === 'failed'))
                     throw new Failure('a part of the picture is missing');
                 await new Promise((resolve) => setTimeout(resolve, 20));
                 if (this.closed)

@@ -43,9 +43,9 @@ export function pixelsOf(picture) {
 }
 
 export class Views {
-    constructor(device, scene, painter) {
-        Object.assign(this, { device, scene, painter });
-        this.layers = Math.min(scene.views.length, MOST_LAYERS);
+    constructor(device, published, painter) {
+        Object.assign(this, { device, published, painter });
+        this.layers = Math.min(published.views.length, MOST_LAYERS);
         this.slots = new Recent();  // view -> its layer
         this.free = Array.from({ length: this.layers }, (_, i) => i);
         this.depths = new Map();
@@ -62,7 +62,7 @@ export class Views {
     }
 
     setLevel(level) {
-        const { gl } = this.device, { width, height } = this.scene.levels[level];
+        const { gl } = this.device, { width, height } = this.published.levels[level];
         if (level === this.level)
             return;
         Object.values(this.stores).forEach((texture) => gl.deleteTexture(texture));
@@ -101,14 +101,14 @@ export class Views {
         const target = { frame: this.frame, width, height }, key = `${kind} ${slot}`;
         if (!this.caches.has(key))
             this.caches.set(key, {});
-        this.painter.paint(target, this.scene.views[index], kind, this.level,
+        this.painter.paint(target, this.published.views[index], kind, this.level,
                            { scale: 2 ** -this.level, left: 0, top: 0, flip: true, cache: this.caches.get(key) },
-                           [0, 0, this.scene.width, this.scene.height]);
+                           [0, 0, this.published.width, this.published.height]);
         return slot;
     }
 
     uploadDepth(slot, depth) {
-        const { gl } = this.device, { width, height } = this.scene;
+        const { gl } = this.device, { width, height } = this.published;
         this.depthTexture = this.depthTexture || this.store('depth', gl.R32F, width, height);
         gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.depthTexture);
         gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, slot, width, height, 1, gl.RED, gl.FLOAT, depth.data);
@@ -116,7 +116,7 @@ export class Views {
 
     // Whether the disparities of a view are there; they are loaded by and by.
     hasDepth(index) {
-        const view = this.scene.views[index];
+        const view = this.published.views[index];
         if (!view.depth)
             return false;
         if (!this.depths.has(index)) {
@@ -134,8 +134,8 @@ export class Views {
     }
 
     async loadDepth(index, view) {
-        const picture = await loadPicture(this.scene, view, false);
-        const depth = disparitiesOf(pixelsOf(picture), view, this.scene.slab);
+        const picture = await loadPicture(this.published, view, false);
+        const depth = disparitiesOf(pixelsOf(picture), view, this.published.slab);
         this.depths.set(index, depth);
         this.range = [Math.min(this.range[0], depth.low), Math.max(this.range[1], depth.high)];
         if (this.slots.has(index))

@@ -46,7 +46,7 @@ function openWasm(home) {
 
 // A typed array's content in the core's memory.
 function place(core, array) {
-    const at = core.core_room(Math.max(array.byteLength, 8));
+    const at = core.core_allocate(Math.max(array.byteLength, 8));
     if (!at)
         throw new Failure('out of memory');
     new Uint8Array(core.memory.buffer, at, array.byteLength)
@@ -58,18 +58,18 @@ function placeText(core, text) {
     return place(core, new TextEncoder().encode(`${text}\0`));
 }
 
-// The basis of a scene: which weights its planes have for light from a direction.
+// The basis of a published file: which weights its planes have for light from a direction.
 export class Basis {
-    static async open(scene, home) {
+    static async open(published, home) {
         const basis = new Basis();
         basis.core = await openWasm(home);
-        basis.begin(scene);
+        basis.begin(published);
         return basis;
     }
 
     // Of the captured pictures themselves, which an interpolant blends.
     pictures({ interpolant, parameter = [] }) {
-        const b = this.scene.basis, n = b.lights.length / 3, transform = new Float32Array(3 * n * n), basis = new Basis();
+        const b = this.published.basis, n = b.lights.length / 3, transform = new Float32Array(3 * n * n), basis = new Basis();
         for (let i = 0; i < 3 * n; i++)
             transform[i * n + i % n] = 1;
         basis.core = this.core;
@@ -80,7 +80,7 @@ export class Basis {
 
     // Of such a basis: its triangles, nodes and inverse each, 12 numbers.
     triangles() {
-        const core = this.core, most = 4 * this.captured + 64, out = core.core_room(48 * most), n = core.core_triangles(this.handle, out, most);
+        const core = this.core, most = 4 * this.captured + 64, out = core.core_allocate(48 * most), n = core.core_triangles(this.handle, out, most);
         const found = new Float32Array(core.memory.buffer, out, 12 * Math.max(n, 0)).slice();
         core.core_free(out);
         if (n < 0)
@@ -90,31 +90,31 @@ export class Basis {
 
     // Of such a basis: the pictures that it blends, [{ light, direction, weight }].
     around(direction, least = 0) {
-        const { weights } = this.weights(direction), { lights } = this.scene.basis, out = [];
+        const { weights } = this.weights(direction), { lights } = this.published.basis, out = [];
         for (let i = 0; i < lights.length / 3; i++)
             if (Math.abs(weights[i]) > least)
                 out.push({ light: i, direction: lights.slice(3 * i, 3 * i + 3), weight: weights[i] });
         return out;
     }
 
-    begin(scene) {
-        Object.assign(this, { scene, beside: [] });
-        const core = this.core, b = scene.basis;
+    begin(published) {
+        Object.assign(this, { published, beside: [] });
+        const core = this.core, b = published.basis;
         const given = [placeText(core, b.name), placeText(core, b.interpolant || ''),
                        place(core, new Float64Array(4).map((_, i) => b.parameter[i] || 0)),
                        place(core, new Float64Array(b.lights)),
-                       place(core, scene.transform), place(core, scene.mean)];
+                       place(core, published.transform), place(core, published.mean)];
         this.handle = core.core_open(given[0], given[1], given[2], b.coefficients,
                                      b.hemispherical ? 1 : 0, b.pole === 'y' ? 1 : 0, given[3],
                                      b.lights.length / 3);
-        const right = this.handle && core.core_functions(this.handle) === scene.functions &&
-                      core.core_turn(this.handle, given[4], given[5], scene.planes);
+        const right = this.handle && core.core_functions(this.handle) === published.functions &&
+                      core.core_turn(this.handle, given[4], given[5], published.planes);
         given.forEach((at) => core.core_free(at));
         if (!right)
             throw new Failure(`scene.json: basis ${b.name} is not what this page knows`);
-        this.size = 3 * (scene.planes + 1);
+        this.size = 3 * (published.planes + 1);
         this.captured = b.lights.length / 3;
-        this.out = core.core_room(4 * this.size);
+        this.out = core.core_allocate(4 * this.size);
     }
 
     // { share, from, weights }: [3][planes + 1], the last of each three being a constant; `from`: the direction
@@ -127,7 +127,7 @@ export class Basis {
 
     // Lights that stand for a lat-long map: [{ direction, rgb }].
     environment(map, rotateDeg) {
-        const core = this.core, given = place(core, map.rgb), out = core.core_room(48 * this.captured);
+        const core = this.core, given = place(core, map.rgb), out = core.core_allocate(48 * this.captured);
         const n = core.core_environment(this.handle, given, map.width, map.height, rotateDeg, out);
         const found = new Float64Array(core.memory.buffer, out, Math.max(6 * n, 0)).slice();
         core.core_free(given);

@@ -12,11 +12,11 @@ extern "C" {
 #endif
 
 // Browsers let a page that was opened from a disk load scripts and pictures only: what it reads has
-// a twin there, a script that holds the same bytes.
+// a script copy there, which holds the same bytes.
 enum relume_publish_for {
     RELUME_PUBLISH_BOTH = 0,
-    RELUME_PUBLISH_WEB,   // without the twins
-    RELUME_PUBLISH_DISK,  // the twins alone
+    RELUME_PUBLISH_WEB,   // without the script copies
+    RELUME_PUBLISH_DISK,  // the script copies alone
 };
 
 // What planes are coded as. Every browser with WebGL2 decodes JPEG; AVIF, which is smaller, those
@@ -68,7 +68,7 @@ struct relume_publish_report {
     char name[64];         // of its page, without ".html", and of its folder
     int views, planes;     // that its folder holds; 0 of a baked object
     int quality;           // asked for or chosen; 0: by size or PSNR
-    uint64_t bytes;        // of its folder, twins not counted
+    uint64_t bytes;        // of its folder, script copies not counted
     uint64_t avif_bytes;   // of its folder: planes as AVIF
     uint64_t first_bytes;  // of what a page loads, before it shows something
     double psnr_db;  // of pictures: of one view, mean over at most 16 lights, 8-bit sRGB, against
@@ -78,7 +78,7 @@ struct relume_publish_report {
 };
 
 // Publishes `count` files, whatever relume_open or relume_baked_open opens, as the folder `site`:
-// whole or not at all. `reports` (may be NULL) has room for `count`. RELUME_EINVAL (no
+// whole or not at all. `reports` (may be NULL) is an array of `count`. RELUME_EINVAL (no
 // file, no name; a folder that is not empty, without `force` or that relume did not make), an input
 // status, RELUME_EUNFIT (a size or PSNR that cannot be reached), RELUME_EUNSUPPORTED (slabs around
 // an object; baked objects of wavelets, of views apart or too large for a page), RELUME_EIO,

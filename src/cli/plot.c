@@ -341,9 +341,9 @@ static void put_labels(struct drawing *d, const struct plot_point *const *sorted
         const double x = page_x(d, sorted[i]->x), y = page_y(d, sorted[i]->y);
         take_rectangle(d, x - RADIUS - 1.0, y - RADIUS - 1.0, x + RADIUS + 1.0, y + RADIUS + 1.0);
     }
-    for (int pass = 0; pass < 2; pass++)
+    for (int turn = 0; turn < 2; turn++)
         for (int i = 0; i < d->plot->points; i++)
-            if (sorted[i]->on_hull == !pass && !is_said(d, sorted, i))
+            if (sorted[i]->on_hull == !turn && !is_said(d, sorted, i))
                 put_label(d, sorted[i]);
 }
 
@@ -366,7 +366,7 @@ static void draw_points(struct drawing *d, const struct plot_point *const *sorte
 
 // ---------------------------------------------------------------- the page
 
-// Room right of the frame for the longest name, up to half of the page.
+// Margin right of the frame for the longest name, up to half of the page.
 static double legend_width(const struct drawing *d)
 {
     double width = 0.0;
@@ -379,8 +379,8 @@ static double legend_width(const struct drawing *d)
 static void draw_legend(struct drawing *d)
 {
     const double x = d->frame.x1 + 20.0;
-    const double room = (d->frame.y1 - d->frame.y0) / (d->plot->series_count + 1);
-    const double step = room < 20.0 ? room : 20.0;
+    const double share = (d->frame.y1 - d->frame.y0) / (d->plot->series_count + 1);
+    const double step = share < 20.0 ? share : 20.0;
     double y = d->frame.y0 + 8.0;
     set_font(d->c, step < 14.0 ? SMALL : TEXT, false);
     for (int s = 0; s < d->plot->series_count; s++, y += step) {

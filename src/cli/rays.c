@@ -56,7 +56,7 @@ relume_status rays_read(struct relume_ray **out, int *count, const char *path,
 {
     struct relume_buffer list = {0};
     char *line = NULL;
-    size_t room = 0;
+    size_t capacity = 0;
     relume_status status = RELUME_OK;
     const bool stream = !strcmp(path, "-");
     const char *const name = stream ? "stdin" : path;
@@ -65,7 +65,7 @@ relume_status rays_read(struct relume_ray **out, int *count, const char *path,
     if (!file)
         return relume_input_fail(log, name, "cannot be read", errno);
     errno = 0;
-    for (int number = 1; !status && getline(&line, &room, file) >= 0; number++)
+    for (int number = 1; !status && getline(&line, &capacity, file) >= 0; number++)
         status = read_line(&list, line, number, name, log);
     if (!status && ferror(file))
         status = relume_input_fail(log, name, "cannot be read", errno);

@@ -42,7 +42,7 @@ static void run_passes(struct times bench[STAGES], relume_eye *eye,
                        const struct relume_image *frame)
 {
     const struct relume_psf_params params = {.size = size, .half_field_deg = field_deg};
-    struct gl_glare card = {.room = 0};
+    struct gl_glare card = {.capacity = 0};
     struct target from, seen;
     bench_check(target_create(&from, &gl, width, height, NULL));
     bench_check(target_create(&seen, &gl, width, height, NULL));

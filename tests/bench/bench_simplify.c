@@ -42,7 +42,7 @@ struct grid {
     vec3 low;
     double side;
     uint32_t *first, *next, *triangle;
-    size_t used, room;
+    size_t used, capacity;
 };
 
 static int cell_of(const struct grid *g, double v, double low)
@@ -53,10 +53,10 @@ static int cell_of(const struct grid *g, double v, double low)
 
 static void put(struct grid *g, int cell, uint32_t t)
 {
-    if (g->used == g->room) {
-        g->room = g->room ? 2 * g->room : 1 << 16;
-        must((g->next = realloc(g->next, g->room * sizeof *g->next)) &&
-             (g->triangle = realloc(g->triangle, g->room * sizeof *g->triangle)));
+    if (g->used == g->capacity) {
+        g->capacity = g->capacity ? 2 * g->capacity : 1 << 16;
+        must((g->next = realloc(g->next, g->capacity * sizeof *g->next)) &&
+             (g->triangle = realloc(g->triangle, g->capacity * sizeof *g->triangle)));
     }
     g->next[g->used] = g->first[cell];
     g->triangle[g->used] = t;

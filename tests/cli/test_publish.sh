@@ -43,16 +43,16 @@ for page in site/*.html; do
     done)
     if [ "$missing" ]; then not_ok "links of $page" "there is no $missing"; else ok "links of $page"; fi
 done
-twins=$(find site -name '*.bin' -o -name scene.json -o -name '*.png' | while read -r file; do
+copies=$(find site -name '*.bin' -o -name scene.json -o -name '*.png' | while read -r file; do
     grep -q "^relume.put(\"${file#site/}\", " "$file.js" || echo "$file.js is called otherwise"
     sed 's/.*", "//; s/");$//' "$file.js" | base64 -d | cmp -s - "$file" || echo "$file.js differs"
 done)
-if [ "$twins" ]; then not_ok 'twins hold the same bytes' "$twins"; else ok 'twins hold the same bytes'; fi
+if [ "$copies" ]; then not_ok 'script copies hold the same bytes' "$copies"; else ok 'script copies hold the same bytes'; fi
 check 'depth of a slab' test -s site/slab/v3/depth.png
 check 'a mask' test -s site/wrap/v0/mask.png
 "$RELUME" publish slab.exr -o web --for web -q && "$RELUME" publish slab.exr -o disk --for disk -q
-check '--for web has no twins' [ -z "$(find web/slab -name '*.js')" ]
-check '--for disk has twins alone' [ -z "$(find disk/slab -name '*.bin' -o -name scene.json)" ]
+check '--for web has no script copies' [ -z "$(find web/slab -name '*.js')" ]
+check '--for disk has script copies alone' [ -z "$(find disk/slab -name '*.bin' -o -name scene.json)" ]
 
 # planes as AVIF, beside JPEG and alone
 publish wrap.exr -o avif --layers avif && publish wrap.exr -o two --layers both

@@ -121,8 +121,8 @@ static inline void fuzz_mutate_bytes(struct fuzz *f, struct bytes *b)
     case 3: b->size = fuzz_below(f, b->size) + 1; break;  // cut
     case 4: {                                             // move a piece
         const size_t to = fuzz_below(f, b->size), n = fuzz_below(f, 64);
-        const size_t room = b->size - (at > to ? at : to);
-        memmove(b->data + to, b->data + at, n < room ? n : room);
+        const size_t left = b->size - (at > to ? at : to);
+        memmove(b->data + to, b->data + at, n < left ? n : left);
         break;
     }
     default: {  // remove a piece

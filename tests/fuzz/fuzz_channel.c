@@ -55,7 +55,7 @@ static bool say_one(int end)
     static uint8_t text[MOST];
     union {
         struct cmsghdr header;
-        char room[CMSG_SPACE(FILES * sizeof(int))];
+        char buffer[CMSG_SPACE(FILES * sizeof(int))];
     } with = {{0}};
     if (!said.size)
         return false;

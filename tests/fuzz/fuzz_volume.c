@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-// Beyond this memory there is no room: scratch files would be as large as their sizes say.
+// Beyond this memory there is none: scratch files would be as large as their sizes say.
 static const struct relume_limits limits = {
     .max_side = 64, .max_pixels = 4096, .max_memory = 1 << 20};
 

@@ -33,14 +33,14 @@ static void compare(const struct block_format *f, GLenum internal)
     int most = 0;
     for (int b = 0; b < ACROSS * ACROSS; b++) {
         uint8_t rgb[BLOCK_PIXELS][3];
-        for (int pass = 0; pass < 2; pass++) {
+        for (int step = 0; step < 2; step++) {
             for (int i = 0; i < BLOCK_PIXELS; i++) {
                 const int x = b % ACROSS * BLOCK_SIDE + i % BLOCK_SIDE;
                 const int y = b / ACROSS * BLOCK_SIDE + i / BLOCK_SIDE;
-                memcpy(pass ? ours[y * SIDE + x] : rgb[i], pass ? rgb[i] : picture[y * SIDE + x],
+                memcpy(step ? ours[y * SIDE + x] : rgb[i], step ? rgb[i] : picture[y * SIDE + x],
                        3);
             }
-            if (!pass) {
+            if (!step) {
                 f->encode(coded + (size_t)b * f->bytes, (const uint8_t(*)[3])rgb);
                 f->decode(rgb, coded + (size_t)b * f->bytes);
             }

@@ -408,7 +408,7 @@ static void a_loop_goes_around(void **state)
     s.app.now.observer.cycle_s = 0.4;
     (void)app_advance(&s.app, 0.1);
     struct relume_image first = look(&s), seen = look(&s);
-    assert_true(s.glare.loop.cycle && !s.glare.passes);
+    assert_true(s.glare.loop.cycle && !s.glare.by_gpu);
     (void)app_advance(&s.app, 0.2);
     assert_true(changed(&s, &seen) > 0.01);
     (void)app_advance(&s.app, 0.2);

@@ -16,14 +16,14 @@ static void test_round_trip(void **state)
     };
     // words of lights are separated by blanks, numbers of others by commas
     static const char *const read[] = {added[0][1], "1,2,3", "-1.5", "dir 0 0 1"};
-    char line[STATE_LINE_MOST] = "", room[STATE_LINE_MOST], address[STATE_LINE_MOST + 40];
+    char line[STATE_LINE_MOST] = "", buffer[STATE_LINE_MOST], address[STATE_LINE_MOST + 40];
     struct state_entry entry[MOST];
     int n;
     for (size_t i = 0; i < 4; i++)
         assert_true(state_line_add(line, sizeof line, added[i][0], added[i][1]));
     assert_null(strpbrk(line, " \"#<>'"));
     snprintf(address, sizeof address, "https://a.org/b.html?c=d&e#%s", line);
-    CHECK_OK(state_line_read(entry, &n, MOST, room, address, NULL));
+    CHECK_OK(state_line_read(entry, &n, MOST, buffer, address, NULL));
     assert_int_equal(n, 4);
     for (int i = 0; i < n; i++) {
         assert_int_equal(strncmp(entry[i].option, "--", 2), 0);
@@ -42,24 +42,25 @@ static void test_refused(void **state)
     static const char *const wrong[] = {"light",     "light=%",      "light=%2",
                                         "light=a%2", "light=%zz",    "light=%00",
                                         "pan=%0a",   "pan=\x1b[31m", "pan=1&tilt"};
-    static char many[STATE_LINE_MOST + 8], room[STATE_LINE_MOST];
+    static char many[STATE_LINE_MOST + 8], buffer[STATE_LINE_MOST];
     struct test_log log;
     struct state_entry entry[MOST];
     int n;
     test_log_init(&log);
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         log.lines = 0;
-        assert_int_equal(state_line_read(entry, &n, MOST, room, wrong[i], &log.log), RELUME_EINVAL);
+        assert_int_equal(state_line_read(entry, &n, MOST, buffer, wrong[i], &log.log),
+                         RELUME_EINVAL);
         assert_int_equal(log.lines, 1);
     }
     for (int i = 0; i < MOST + 1; i++)
         strcat(many, "pan=1&");
-    assert_int_equal(state_line_read(entry, &n, MOST, room, many, &log.log), RELUME_EINVAL);
+    assert_int_equal(state_line_read(entry, &n, MOST, buffer, many, &log.log), RELUME_EINVAL);
     memset(many, '1', sizeof many - 1);
-    assert_int_equal(state_line_read(entry, &n, MOST, room, many, &log.log), RELUME_EINVAL);
+    assert_int_equal(state_line_read(entry, &n, MOST, buffer, many, &log.log), RELUME_EINVAL);
     // options that write, or that nobody knows, are no part of a state
     log.lines = 0;
-    CHECK_OK(state_line_read(entry, &n, MOST, room, "o=x&save-rig=y&at=1,2&file=z&\x1b=1&&pan=3&",
+    CHECK_OK(state_line_read(entry, &n, MOST, buffer, "o=x&save-rig=y&at=1,2&file=z&\x1b=1&&pan=3&",
                              &log.log));
     assert_int_equal(n, 1);
     assert_int_equal(log.lines, 3);

@@ -11,7 +11,7 @@ const core = made.instance.exports;
 core._initialize?.();
 
 function place(array) {
-    const at = core.core_room(array.byteLength + 8);
+    const at = core.core_allocate(array.byteLength + 8);
     new Uint8Array(core.memory.buffer, at, array.byteLength).set(new Uint8Array(array.buffer, 0, array.byteLength));
     return at;
 }
@@ -31,7 +31,7 @@ for (const line of readFileSync(0, 'utf8').trim().split('\n')) {
                                   c.hemispherical, c.pole, place(new Float64Array(c.lights)), c.lights.length / 3);
     if (!handle || core.core_functions(handle) !== f || !core.core_turn(handle, place(identity), place(new Float32Array(3 * f)), f))
         throw new Error(`${c.basis} ${c.interpolant} cannot be opened`);
-    const out = core.core_room(12 * (f + 1));
+    const out = core.core_allocate(12 * (f + 1));
     for (const answer of c.answers) {
         const got = core.core_weights(handle, ...answer.direction, out);
         const weights = new Float32Array(core.memory.buffer, out, f), bits = new Uint32Array(core.memory.buffer, out, f);
@@ -45,7 +45,7 @@ for (const line of readFileSync(0, 'utf8').trim().split('\n')) {
     }
     if (!c.environment)
         continue;
-    const map = new Float32Array(3 * 16 * 32).map((_, i) => i * 37 % 101), lights = core.core_room(48 * 64);
+    const map = new Float32Array(3 * 16 * 32).map((_, i) => i * 37 % 101), lights = core.core_allocate(48 * 64);
     const n = core.core_environment(handle, place(map), 32, 16, 30, lights);
     const found = new Float64Array(core.memory.buffer, lights, 6 * n);
     environment = Math.max(environment, n * 6 === c.environment.length ? 0 : 1,

@@ -44,7 +44,7 @@ static void text(struct buffer *b, const char *t)
     put(b, t, strlen(t));
 }
 
-// IFF with a picture of more rows than it has room for: writes behind the end in OpenImageIO 2.4.
+// IFF with a picture of more rows than it can hold: writes behind the end in OpenImageIO 2.4.
 static void iff(struct buffer *b)
 {
     text(b, "FOR4");

@@ -98,7 +98,7 @@ static void params_of_other_versions(void **state)
     assert_int_equal(none.a + none.b, 0);
 }
 
-// Room doubles, what is there stays, and where memory is short nothing has changed.
+// Memory doubles, what is there stays, and where memory is short nothing has changed.
 static void test_growing_array(void **state)
 {
     (void)state;

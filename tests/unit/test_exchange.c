@@ -135,12 +135,12 @@ static void raw_lrgb_is_read(void **state)
         struct foreign f;
         begin(&t);
         header(t.file, interleaved ? "1.1" : "1.2", "PTM_FORMAT_LRGB", "\n", false);
-        for (int pass = 0; pass < 2 - interleaved; pass++)
+        for (int step = 0; step < 2 - interleaved; step++)
             for (int y = H - 1; y >= 0; y--)
                 for (int x = 0; x < W; x++) {
-                    if (interleaved || pass == 0)
+                    if (interleaved || step == 0)
                         terms_of(t.file, x, y);
-                    if (interleaved || pass == 1)
+                    if (interleaved || step == 1)
                         colour_of(t.file, x, y);
                 }
         CHECK_OK(ptm_read(&f, save(&t, "a.ptm"), NULL, NULL));

@@ -91,8 +91,8 @@ static void transform(const fft2d *f, float *spectrum, struct picture *p)
     for (size_t i = 0; i < fft2d_size(f); i++)
         spectrum[i] = 1e6f;
     fft2d_rows(f, spectrum, FROM, TO, fill, p);
-    const struct fft2d_pass pass = {.from = FROM, .to = TO, .end = fft2d_columns(f)};
-    fft2d_pass_columns(f, spectrum, &pass);
+    const struct fft2d_step step = {.from = FROM, .to = TO, .end = fft2d_columns(f)};
+    fft2d_step_columns(f, spectrum, &step);
 }
 
 static void check_planes(void **state)
@@ -130,7 +130,7 @@ static void check_planes(void **state)
     }
 }
 
-// A column pass that goes there and back is the identity, and a visit that answers false leaves the
+// A column step that goes there and back is the identity, and a visit that answers false leaves the
 // spectrum alone.
 static bool keep(void *context, int column, int count, float *lines)
 {
@@ -150,13 +150,13 @@ static void check_passes(void **state)
         bool answer = stored;
         memset(spectrum, 0, fft2d_size(f) * sizeof *spectrum);
         fft2d_rows(f, spectrum, FROM, TO, fill, &p);
-        const struct fft2d_pass pass = {.from = FROM,
+        const struct fft2d_step step = {.from = FROM,
                                         .to = TO,
                                         .end = fft2d_columns(f),
                                         .visit = keep,
                                         .context = &answer,
                                         .back = true};
-        fft2d_pass_columns(f, spectrum, &pass);
+        fft2d_step_columns(f, spectrum, &step);
         fft2d_rows_back(f, spectrum, 0, H, take, &p);
         for (int y = 0; y < H; y++)
             for (int x = 0; x < W; x++)
@@ -218,8 +218,8 @@ static void check_odd_planes(void **state)
     float *const spectrum = malloc(fft2d_size(f) * sizeof *spectrum);
     assert_non_null(spectrum);
     fft2d_rows(f, spectrum, 0, ODD_H, fill_odd, NULL);
-    const struct fft2d_pass pass = {.to = ODD_H, .end = fft2d_columns(f)};
-    fft2d_pass_columns(f, spectrum, &pass);
+    const struct fft2d_step step = {.to = ODD_H, .end = fft2d_columns(f)};
+    fft2d_step_columns(f, spectrum, &step);
     fft2d_columns_back(f, spectrum);
     fft2d_rows_back(f, spectrum, 0, ODD_H, take_odd, NULL);
     free(spectrum);

@@ -405,14 +405,14 @@ static int open_edges(struct edge *edge, size_t n)
         size_t first = i, last = i + 1;
         for (; last < n && !by_ends(&edge[last], &edge[i]); last++) {
         }
-        const struct edge *twin = bsearch(&back, edge, n, sizeof *edge, by_ends);
-        size_t twins = 0;
-        for (const struct edge *e = twin; e && e >= edge && !by_ends(e, &back); e--)
-            twins++;
-        for (const struct edge *e = twin ? twin + 1 : NULL; e && e < edge + n && !by_ends(e, &back);
-             e++)
-            twins++;
-        open += last - first > twins;
+        const struct edge *opposite = bsearch(&back, edge, n, sizeof *edge, by_ends);
+        size_t opposites = 0;
+        for (const struct edge *e = opposite; e && e >= edge && !by_ends(e, &back); e--)
+            opposites++;
+        for (const struct edge *e = opposite ? opposite + 1 : NULL;
+             e && e < edge + n && !by_ends(e, &back); e++)
+            opposites++;
+        open += last - first > opposites;
         i = last - 1;
     }
     return open;

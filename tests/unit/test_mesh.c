@@ -155,10 +155,10 @@ static void put(unsigned char **at, const void *bytes, size_t size, bool big)
         *(*at)++ = ((const unsigned char *)bytes)[big ? size - 1 - i : i];
 }
 
-static size_t binary_ply(unsigned char *out, size_t room, bool big)
+static size_t binary_ply(unsigned char *out, size_t capacity, bool big)
 {
-    int used =
-        snprintf((char *)out, room, ply_header, big ? "binary_big_endian" : "binary_little_endian");
+    int used = snprintf((char *)out, capacity, ply_header,
+                        big ? "binary_big_endian" : "binary_little_endian");
     unsigned char *at = out + used;
     for (int i = 0; i < 4; i++) {
         for (int c = 0; c < 3; c++)

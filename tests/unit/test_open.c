@@ -33,7 +33,7 @@ static double shown(const struct opened *o, const void *tile, size_t pixels, int
     const size_t i = 4 * ((size_t)(n / 3) * pixels + at) + (size_t)(n % 3);
     const double code = o->bytes ? ((const uint8_t *)tile)[i]
                                  : 255.0 * float_from_half(((const uint16_t *)tile)[i]);
-    return code * (double)o->scene.levels.scale[n] + (double)o->scene.levels.offset[n];
+    return code * (double)o->file.levels.scale[n] + (double)o->file.levels.offset[n];
 }
 
 // The mean over the pixels that one of a level covers.
@@ -60,7 +60,7 @@ static void check_level(struct opened *o, const struct relume_codes *codes, int 
         for (size_t at = 0; at < pixels; at++) {
             const double want = covered(plane, w, h, step, (int)at % width, (int)at / width);
             // bytes: the file's own codes, and half a step where they are means; halves: 11 bits
-            const double off = o->bytes ? (level ? 0.51 : 0.01) * (double)o->scene.levels.scale[n]
+            const double off = o->bytes ? (level ? 0.51 : 0.01) * (double)o->file.levels.scale[n]
                                         : 0x1p-11 * fabs(want) + 1e-7;
             CHECK_NEAR(shown(o, tile, pixels, n, at), want, off);
         }
@@ -78,13 +78,13 @@ static void check_file(const struct fixture *f, enum relume_storage storage, boo
     file.bytes = test_read(path, &file.size);
     struct opened *o = open_made(name);
     assert_string_equal(open_why(o), "");
-    assert_non_null(strstr(open_scene(o), "\"title\": \"a \\u003cname\\u003e.exr\""));
+    assert_non_null(strstr(open_json(o), "\"title\": \"a \\u003cname\\u003e.exr\""));
     assert_int_equal(open_is_bytes(o), bytes);
     CHECK_OK(relume_pack_open(&pack, path, NULL));
     for (int view = 0; view < f->views; view++) {
         const struct relume_codes *codes;
         CHECK_OK(relume_pack_codes(&codes, pack, view));
-        for (int level = 0; level < o->scene.levels.count; level++)
+        for (int level = 0; level < o->file.levels.count; level++)
             check_level(o, codes, view, level);
         if (f->depth) {
             const uint8_t *depth = open_picture(o, view, 0);

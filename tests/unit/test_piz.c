@@ -147,13 +147,13 @@ static void compare_block(piz *p, kind *word, int width, int rows, int channels,
     const size_t n = (size_t)width * (size_t)rows * (size_t)channels, plain = 2 * n;
     uint16_t *words = malloc(plain);
     uint16_t *work = malloc(plain);
-    uint8_t *out = malloc(piz_room(plain));
+    uint8_t *out = malloc(piz_bound(plain));
     struct reference r;
     for (size_t i = 0; i < n; i++)
         words[i] = word(i, seed);
     compress_by_library(&r, words, width, rows, channels);
     const size_t size = piz_compress(p, out, work, words, width, rows, channels);
-    assert_true(size > 0 && size <= piz_room(plain));
+    assert_true(size > 0 && size <= piz_bound(plain));
     if (size < plain || r.size != plain) {  // otherwise the library stores the samples as they are
         assert_int_equal(size, r.size);
         assert_memory_equal(out, r.bytes, size);
@@ -184,7 +184,7 @@ static void test_too_many_values(void **state)
     enum { WIDTH = 1024, ROWS = 32, N = WIDTH * ROWS };
     uint16_t *words = malloc(2 * N);
     uint16_t *work = malloc(2 * N);
-    uint8_t *out = malloc(piz_room(2 * N));
+    uint8_t *out = malloc(piz_bound(2 * N));
     (void)state;
     piz *p = piz_create();
     for (int i = 0; i < N; i++)

@@ -129,18 +129,18 @@ static double diagonal_of(const struct relume_mesh *m)
     return vec3_length(vec3_sub(high, low));
 }
 
-// Every edge of a closed surface has a twin the other way round; points of seams are one.
+// Every edge of a closed surface has an opposite, the other way round; points of seams are one.
 static bool is_closed(const struct relume_mesh *m)
 {
     for (size_t t = 0; t < m->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             const vec3 a = at(m, m->triangle[t][k]), b = at(m, m->triangle[t][(k + 1) % 3]);
-            int twins = 0;
+            int opposites = 0;
             for (size_t u = 0; u < m->triangle_count; u++)
                 for (int j = 0; j < 3; j++)
-                    twins += !vec3_length(vec3_sub(at(m, m->triangle[u][j]), b)) &&
-                             !vec3_length(vec3_sub(at(m, m->triangle[u][(j + 1) % 3]), a));
-            if (twins != 1)
+                    opposites += !vec3_length(vec3_sub(at(m, m->triangle[u][j]), b)) &&
+                                 !vec3_length(vec3_sub(at(m, m->triangle[u][(j + 1) % 3]), a));
+            if (opposites != 1)
                 return false;
         }
     return true;

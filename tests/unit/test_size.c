@@ -36,7 +36,7 @@ struct coded_slab {
     relume_coder *coder;
     struct relume_pack_encode_params p;
     struct relume_project_params encode;
-    struct material m;
+    struct contents made;
     struct view_groups groups;
 };
 
@@ -52,23 +52,23 @@ static void open_slab(struct coded_slab *s)
     s->p = (struct relume_pack_encode_params){.bytes_per_pixel = 1.0};
     s->encode = (struct relume_project_params){
         .domain = RELUME_DOMAIN_DISPLAY, .storage = RELUME_STORE_12, .step = RELUME_STEP_COMMON};
-    s->m = (struct material){
+    s->made = (struct contents){
         .capture = s->capture, .coder = s->coder, .p = &s->p, .encode = &s->encode};
-    CHECK_OK(material_create(&s->m, &(const struct encode_share){.views = 3}));
+    CHECK_OK(contents_create(&s->made, &(const struct encode_share){.views = 3}));
     CHECK_OK(groups_make(&s->groups, s->capture, s->coder));
     for (int i = 0; i < 3; i++) {
-        CHECK_OK(material_encode(&s->m, i));
-        CHECK_OK(material_extras(&s->m, i));
-        s->m.view[i].depth_step = i ? 0.01f : 0.0f;
-        s->m.view[i].predicted = i > 0;
+        CHECK_OK(contents_encode(&s->made, i));
+        CHECK_OK(contents_extras(&s->made, i));
+        s->made.view[i].depth_step = i ? 0.01f : 0.0f;
+        s->made.view[i].predicted = i > 0;
     }
-    CHECK_OK(coefficients_share_steps(s->m.coefficients, 3, true, RELUME_STEP_COMMON));
+    CHECK_OK(coefficients_share_steps(s->made.coefficients, 3, true, RELUME_STEP_COMMON));
 }
 
 static void close_slab(struct coded_slab *s)
 {
     groups_destroy(&s->groups);
-    material_destroy(&s->m);
+    contents_destroy(&s->made);
     relume_coder_destroy(&s->coder);
     relume_capture_destroy(&s->capture);
 }
@@ -79,7 +79,7 @@ static void test_without_loss(void **state)
     struct coded_slab s = {.capture = NULL};
     struct relume_pack_contents c;
     open_slab(&s);
-    material_contents(&c, &s.m);
+    contents_describe(&c, &s.made);
     check_size(&c);
     close_slab(&s);
 }
@@ -92,12 +92,12 @@ static void test_with_loss(void **state)
     const struct av1_effort effort = {40 * AV1_STEPS, AV1_FAST};
     struct lossy_words words = {0};
     open_slab(&s);
-    CHECK_OK(lossy_encode(&words, s.m.coefficients, 1, &effort, 1, NULL));
+    CHECK_OK(lossy_encode(&words, s.made.coefficients, 1, &effort, 1, NULL));
     for (int i = 0; i < 3; i++) {
-        s.m.view[i].coded = words.word;
-        s.m.view[i].coded_words = words.count;
+        s.made.view[i].coded = words.word;
+        s.made.view[i].coded_words = words.count;
     }
-    material_contents(&c, &s.m);
+    contents_describe(&c, &s.made);
     check_size(&c);
     mem_free(words.word);
     close_slab(&s);
@@ -114,21 +114,21 @@ static void test_overhead(void **state)
     double heads, extras, preview, models;
     open_slab(&s);
     assert_int_equal(s.groups.count, 1);
-    CHECK_OK(overhead_create(&o, &s.m, &s.groups));
+    CHECK_OK(overhead_create(&o, &s.made, &s.groups));
     CHECK_OK(overhead_heads(&heads, &o));
     CHECK_OK(overhead_extras(&extras, &o, 0));
     CHECK_OK(overhead_preview(&preview, &o));
     CHECK_OK(overhead_models(&models, &o));
-    material_contents(&c, &s.m);
+    contents_describe(&c, &s.made);
     c.preview = NULL;
     for (int i = 0; i < 3; i++) {
-        s.m.view[i].coded = word;
-        s.m.view[i].coded_words = 1;
+        s.made.view[i].coded = word;
+        s.made.view[i].coded_words = 1;
     }
     CHECK_NEAR((double)written(&c, RELUME_COMPRESS_DEFAULT), o.header + extras, 0.0);
     for (int i = 0; i < 3; i++) {
-        s.m.view[i].depth = s.m.view[i].mask = NULL;
-        s.m.view[i].coded = i ? NULL : word;
+        s.made.view[i].depth = s.made.view[i].mask = NULL;
+        s.made.view[i].coded = i ? NULL : word;
     }
     CHECK_NEAR((double)written(&c, RELUME_COMPRESS_DEFAULT), heads, 0.0);
     CHECK_NEAR(o.header, heads, 0.0);  // of one group

@@ -355,9 +355,9 @@ static void one_slab_is_a_slab(void **state)
 }
 
 // A frame of slab 0, `n` times in the same place.
-static struct relume_image draw_twins(int n)
+static struct relume_image draw_copies(int n)
 {
-    const struct relume_geometry twin[2] = {c.slab[0], c.slab[0]};
+    const struct relume_geometry same[2] = {c.slab[0], c.slab[0]};
     const struct relume_window w = window_from(eye_at(5, 0.4, 3.2));
     struct relume_image view[2 * GRID], disparity[2 * GRID], out;
     double uv[2 * GRID][2];
@@ -370,7 +370,7 @@ static struct relume_image draw_twins(int n)
         memcpy(uv[i], c.uv[from], sizeof uv[i]);
         slab_of[i] = i % n;
     }
-    CHECK_OK(relume_slab_set_create(&slabs, twin, n, (const double(*)[2])uv, slab_of, n * GRID));
+    CHECK_OK(relume_slab_set_create(&slabs, same, n, (const double(*)[2])uv, slab_of, n * GRID));
     CHECK_OK(relume_image_create(&out, W, W, 3));
     CHECK_OK(
         relume_slab_set_frame(&out, slabs, &w, view, relume_view_params(.disparity = disparity)));
@@ -379,10 +379,10 @@ static struct relume_image draw_twins(int n)
 }
 
 // Slabs that lie in one another say the same twice.
-static void twins_are_one(void **state)
+static void copies_are_one(void **state)
 {
     (void)state;
-    struct relume_image one = draw_twins(1), two = draw_twins(2);
+    struct relume_image one = draw_copies(1), two = draw_copies(2);
     assert_true(difference(&one, &two) < 1e-5);
     relume_image_destroy(&one);
     relume_image_destroy(&two);
@@ -771,7 +771,7 @@ int main(void)
         cmocka_unit_test(a_camera_sees_its_view),
         cmocka_unit_test(poses_turn_with_the_world),
         cmocka_unit_test(one_slab_is_a_slab),
-        cmocka_unit_test(twins_are_one),
+        cmocka_unit_test(copies_are_one),
         cmocka_unit_test(only_needed_views_are_read),
         cmocka_unit_test(a_ray_is_its_pixel),
         cmocka_unit_test(threads_do_not_matter),

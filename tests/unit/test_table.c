@@ -110,7 +110,7 @@ static void test_the_rest_is_on_disk(void **state)
                     (const int[]){1, 1, 1});
 }
 
-// A table that was closed early leaves nothing, and gives its room back.
+// A table that was closed early leaves nothing, and gives its memory back.
 static void test_part_is_not_kept(void **state)
 {
     (void)state;

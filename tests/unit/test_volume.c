@@ -452,7 +452,7 @@ static void test_pages_of_a_tiff(void **state)
     unlink(name(".tif"));
 }
 
-// What a file only claims gets no room: where there is none the sentence is still about the file.
+// What a file only claims gets no memory: where there is none the sentence is still about the file.
 static void test_claims_without_samples(void **state)
 {
     (void)state;

@@ -12,12 +12,12 @@
 
 static relume_status take_lights(struct frame_request *q, const struct app_state *now)
 {
-    if (now->lights > q->room) {
+    if (now->lights > q->capacity) {
         struct relume_light *light = realloc(q->light, (size_t)now->lights * sizeof *light);
         if (!light)
             return RELUME_ENOMEM;
         q->light = light;
-        q->room = now->lights;
+        q->capacity = now->lights;
     }
     q->lights = light_list_shining(now, q->light);
     return RELUME_OK;
@@ -51,7 +51,7 @@ void frame_request_look(struct frame_request *q, const struct app *app)
         .pass = now->pass,
         .enhance = now->enhance,
         .light = q->light,
-        .room = q->room,
+        .capacity = q->capacity,
         .observer = now->observer,
         .eye_s = app->eye_s,
         .fov_deg = app_fov_deg(app),

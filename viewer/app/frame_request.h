@@ -21,7 +21,7 @@ struct frame_request {
     enum relume_pass pass;
     struct relume_pass_params enhance;  // of it
     struct relume_light *light;         // [lights]: those that shine
-    int lights, room;
+    int lights, capacity;
     struct observer observer;
     double eye_s;    // that the eye has lived
     double fov_deg;  // of the frame, as app_fov_deg

@@ -52,17 +52,17 @@ int light_list_near(const struct app_state *state)
 
 // ---------------------------------------------------------------- list
 
-static bool make_room(struct app_state *state, int room)
+static bool grow_lights(struct app_state *state, int capacity)
 {
-    struct relume_light *light = realloc(state->light, (size_t)room * sizeof *light);
+    struct relume_light *light = realloc(state->light, (size_t)capacity * sizeof *light);
     if (light)
         state->light = light;
     struct app_light_state *own =
-        light ? realloc(state->light_state, (size_t)room * sizeof *own) : NULL;
+        light ? realloc(state->light_state, (size_t)capacity * sizeof *own) : NULL;
     if (!own)
         return false;
     state->light_state = own;
-    state->room = room;
+    state->capacity = capacity;
     return true;
 }
 
@@ -71,7 +71,7 @@ bool light_list_copy(struct app_state *to, const struct app_state *from)
     struct app_state made = *from;
     made.light = NULL;
     made.light_state = NULL;
-    if (!make_room(&made, from->lights ? from->lights : 1)) {
+    if (!grow_lights(&made, from->lights ? from->lights : 1)) {
         light_list_release(&made);
         return false;
     }
@@ -90,14 +90,14 @@ void light_list_release(struct app_state *state)
     free(state->light_state);
     state->light = NULL;
     state->light_state = NULL;
-    state->lights = state->room = 0;
+    state->lights = state->capacity = 0;
 }
 
 bool light_list_add(struct app_state *state, const struct relume_light *light, int entry)
 {
     const struct relume_light copy = *light;  // it may stand in the list that moves
     if (state->lights == APP_LIGHTS ||
-        (state->lights == state->room && !make_room(state, 2 * state->room + 8)))
+        (state->lights == state->capacity && !grow_lights(state, 2 * state->capacity + 8)))
         return false;
     state->selected = state->lights++;
     state->light[state->selected] = copy;

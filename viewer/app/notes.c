@@ -100,10 +100,10 @@ bool notes_to_frame(double xy[2], const struct app *app, const double place[2], 
 static bool add_vertex(struct notes *n, const double place[2], double z)
 {
     const bool full = n->places == RELUME_NOTE_MOST_PLACES;
-    const size_t room = (size_t)n->places + 1;
-    double(*more)[2] = full ? NULL : realloc(n->place, room * sizeof *more);
+    const size_t capacity = (size_t)n->places + 1;
+    double(*more)[2] = full ? NULL : realloc(n->place, capacity * sizeof *more);
     n->place = more ? more : n->place;
-    double *deep = more ? realloc(n->z, room * sizeof *deep) : NULL;
+    double *deep = more ? realloc(n->z, capacity * sizeof *deep) : NULL;
     if (!deep)
         return false;
     n->z = deep;

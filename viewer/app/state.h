@@ -108,9 +108,9 @@ struct app_state {
     bool auto_exposure;                   // on top of exposure_ev
     int tone;                             // place in relume_tones
     double white;                         // as relume_tone_params
-    struct relume_light *light;           // [lights], with room for more
+    struct relume_light *light;           // [lights] of [capacity]
     struct app_light_state *light_state;  // by light
-    int lights, room;
+    int lights, capacity;
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;

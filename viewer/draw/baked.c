@@ -53,7 +53,7 @@ static relume_status fill(struct baked_drawer *d, struct baked_material *m, int 
     return gl_check(gl, "uploading a baked object", d->log);
 }
 
-// Threes in the room of fours: GL 3.3 has no buffers of three.
+// Threes padded to fours: GL 3.3 has no buffers of three.
 static relume_status fill_threes(struct baked_drawer *d, struct baked_material *m, int i,
                                  const float *three, size_t n)
 {

@@ -1,4 +1,4 @@
-// baked.h - baked objects on the GPU: lights are summed up beforehand, so that a part is one pass
+// baked.h - baked objects on the GPU: lights are summed up beforehand, so that a part is one draw
 #ifndef VIEWER_BAKED_H
 #define VIEWER_BAKED_H
 

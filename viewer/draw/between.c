@@ -1,4 +1,4 @@
-// between.c - light between a captured panorama and the objects in it, by passes over the frame.
+// between.c - light between a captured panorama and the objects in it, by draws over the frame.
 // Twins: world/object/exchange.c, world/transport/screen.c, world/transport/smooth.c
 #include "draw/between.h"
 
@@ -49,7 +49,7 @@ relume_status between_create(struct between *b, const struct gl *gl,
     return status;
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- draws
 
 // Texture `unit` of the program in use.
 static void use_target(const struct between *b, GLint at, int unit, const struct target *target)

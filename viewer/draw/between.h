@@ -1,4 +1,4 @@
-// between.h - light between a captured panorama and the objects in it, by passes over the frame:
+// between.h - light between a captured panorama and the objects in it, by draws over the frame:
 // the ways of world/transport/screen.c on the graphics card
 //
 // They differ from that file in this: all directions are spread as the cosine (none by what is
@@ -28,7 +28,7 @@ struct between {
     struct between_points points;
 };
 
-// What all passes of a frame know.
+// What all draws of a frame know.
 struct between_view {
     const struct relume_geometry *geometry;
     const struct target *panorama_places;

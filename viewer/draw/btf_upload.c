@@ -69,7 +69,7 @@ static relume_status fill(struct btf_material *m, const struct gl *gl, int i, GL
                        log);
 }
 
-// Halfs by three, with room for a fourth: GL 3.3 has no buffers of three.
+// Halfs by three, padded to four: GL 3.3 has no buffers of three.
 static void widen(uint16_t *to, const uint16_t *from, const uint16_t *fourth, size_t texels)
 {
     for (size_t i = 0; i < texels; i++) {
@@ -153,7 +153,7 @@ struct mesh_list {
     struct relume_vec3 (*across)[3];  // products of the two corners that follow each
     int (*cell)[2];                   // [CELLS * CELLS]: first, count
     float (*texel)[TEXELS][4];
-    size_t used, room;
+    size_t used, capacity;
 };
 
 // The direction at a place of the octahedral map, both in [-1, 1].
@@ -197,13 +197,13 @@ static int triangle_at(const struct mesh_list *d, struct relume_vec3 direction)
 
 static bool add_triangle(struct mesh_list *d, int triangle)
 {
-    if (d->used == d->room) {
-        const size_t room = d->room ? 2 * d->room : 4096;
-        void *bigger = realloc(d->texel, room * sizeof *d->texel);
+    if (d->used == d->capacity) {
+        const size_t capacity = d->capacity ? 2 * d->capacity : 4096;
+        void *bigger = realloc(d->texel, capacity * sizeof *d->texel);
         if (!bigger)
             return false;
         d->texel = bigger;
-        d->room = room;
+        d->capacity = capacity;
     }
     float(*to)[4] = d->texel[d->used++];
     for (int c = 0; c < 3; c++) {

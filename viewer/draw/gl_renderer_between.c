@@ -1,4 +1,4 @@
-// gl_renderer_between.c - frames of a panorama with objects in it and light between them, by passes
+// gl_renderer_between.c - frames of a panorama with objects in it and light between them, by draws
 #include "draw/gl_renderer.h"
 #include "draw/gl_renderer_parts.h"
 

@@ -29,12 +29,12 @@ struct light_exchange {
     struct exchange_source source;  // file NULL: light does not go between
     struct exchanger *exchanger;    // made when first needed
     struct target way[EXCHANGER_SLOTS], beside;
-    bool waits;                         // for finished pictures of it
-    bool by_library;                    // all ways are the library's
-    bool no_points;                     // those that gather from points are the library's, too
-    bool with_depth;                    // a panorama with depth
-    double passes_ms[EXCHANGER_SLOTS];  // time of a way's own passes in the last frame; 0: none
-    struct between between;             // ways that are passes; made when first needed
+    bool waits;                        // for finished pictures of it
+    bool by_library;                   // all ways are the library's
+    bool no_points;                    // those that gather from points are the library's, too
+    bool with_depth;                   // a panorama with depth
+    double draws_ms[EXCHANGER_SLOTS];  // time of a way's own draws in the last frame; 0: none
+    struct between between;            // ways that are drawn; made when first needed
 };
 
 struct gl_renderer {

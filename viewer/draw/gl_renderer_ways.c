@@ -4,7 +4,7 @@
 #include "cli/program/clock.h"
 #include "draw/gl_renderer.h"
 #include "draw/gl_renderer_parts.h"
-#include "world/transport/passes.h"
+#include "world/transport/gl_version.h"
 
 #include <relume/world/transport.h>
 
@@ -49,27 +49,28 @@ relume_status gl_renderer_wait(struct gl_renderer *r)
 
 // ---------------------------------------------------------------- asking
 
-// Ways that are passes, too (gl_renderer_between.c): those of relume_transports that say so.
-static const struct passes {
+// Ways that are drawn, too (gl_renderer_between.c): those of relume_transports that say so.
+static const struct drawn_way {
     const char *way;
     enum between_way as;
-} passes[] = {{"ssdo", BETWEEN_DIRECTIONAL},
-              {"ssao", BETWEEN_AMBIENT},
-              {"micro", BETWEEN_MICRO},
-              {"ism", BETWEEN_ISM}};
+} drawn_ways[] = {{"ssdo", BETWEEN_DIRECTIONAL},
+                  {"ssao", BETWEEN_AMBIENT},
+                  {"micro", BETWEEN_MICRO},
+                  {"ism", BETWEEN_ISM}};
 
 // They gather from points.
-static bool need_compute(const struct passes *p)
+static bool need_compute(const struct drawn_way *p)
 {
-    return relume_transport_passes(relume_transport_find(p->way)) > 33;
+    return relume_transport_gl_version(relume_transport_find(p->way)) > 33;
 }
 
 // NULL: there are none of that way; for any of them (NULL), what stands in for it.
-static const struct passes *passes_of(const struct light_exchange *x, const char *way)
+static const struct drawn_way *drawn_way_of(const struct light_exchange *x, const char *way)
 {
-    for (size_t i = 0; i < sizeof passes / sizeof *passes && !x->by_library; i++)
-        if ((!way || !strcmp(passes[i].way, way)) && !(need_compute(&passes[i]) && x->no_points))
-            return &passes[i];
+    for (size_t i = 0; i < sizeof drawn_ways / sizeof *drawn_ways && !x->by_library; i++)
+        if ((!way || !strcmp(drawn_ways[i].way, way)) &&
+            !(need_compute(&drawn_ways[i]) && x->no_points))
+            return &drawn_ways[i];
     return NULL;
 }
 
@@ -104,10 +105,10 @@ static bool takes_passes(const struct gl_renderer *r, const struct frame_request
 
 static bool is_drawn_by_passes(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
-    return takes_passes(r, q) && passes_of(&r->exchange, way_name(way));
+    return takes_passes(r, q) && drawn_way_of(&r->exchange, way_name(way));
 }
 
-// Own passes, or some that stand in until the library is done.
+// Own draws, or some that stand in until the library is done.
 static bool wants_passes(const struct gl_renderer *r, const struct frame_request *q, int way)
 {
     return goes_between(&r->exchange, q, way) && takes_passes(r, q) &&
@@ -134,7 +135,7 @@ static void do_without_compute(struct gl_renderer *r)
 
 static relume_status check_points(struct gl_renderer *r, const struct frame_request *q, int way)
 {
-    const struct passes *by = way == NO_WAY ? NULL : passes_of(&r->exchange, way_name(way));
+    const struct drawn_way *by = way == NO_WAY ? NULL : drawn_way_of(&r->exchange, way_name(way));
     if (!by || !need_compute(by) || !wants_passes(r, q, way))
         return RELUME_OK;
     if (r->gl->compute)
@@ -219,7 +220,7 @@ static relume_status show_picture(bool *shown, struct gl_renderer *r, const stru
 
 static relume_status draw_passes(bool *drawn, struct gl_renderer *r, const struct frame_request *q,
                                  const struct frame_area *area, const struct relume_light *lights,
-                                 int count, double *ms, const struct passes *by)
+                                 int count, double *ms, const struct drawn_way *by)
 {
     if (q->timed)
         r->gl->Finish();
@@ -235,8 +236,8 @@ static relume_status draw_way(struct gl_renderer *r, const struct frame_request 
                               const struct frame_area *area, const struct relume_light *lights,
                               int count, int slot, int way)
 {
-    const struct passes *own = passes_of(&r->exchange, way_name(way)),
-                        *stand_in = passes_of(&r->exchange, NULL);
+    const struct drawn_way *own = drawn_way_of(&r->exchange, way_name(way)),
+                           *stand_in = drawn_way_of(&r->exchange, NULL);
     const bool between = goes_between(&r->exchange, q, way);
     const bool by_passes = between && is_drawn_by_passes(r, q, way);
     bool shown = false;
@@ -246,7 +247,7 @@ static relume_status draw_way(struct gl_renderer *r, const struct frame_request 
     double ms = 0.0;
     if (!status && !shown && between && stand_in)
         status = draw_passes(&shown, r, q, area, lights, count, &ms, own ? own : stand_in);
-    r->exchange.passes_ms[slot] = by_passes ? ms : 0.0;
+    r->exchange.draws_ms[slot] = by_passes ? ms : 0.0;
     if (status || shown)
         return status;
     if (!r->exchange.source.scene)

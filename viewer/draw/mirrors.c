@@ -227,7 +227,7 @@ static relume_status use_edit(struct mirrors *m, const GLint *at, const relume_o
     return gl_check(gl, "edited reflections", m->log);
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- draws
 
 static void use_surface(const struct mirrors *m, const GLint *at,
                         const struct mirror_surface *surface, int part, const float reflectance[3])

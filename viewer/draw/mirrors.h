@@ -1,4 +1,4 @@
-// mirrors.h - mirrors among objects, on the GPU: a pass over the surface for each part that is one
+// mirrors.h - mirrors among objects, on the GPU: a draw over the surface for each part that is one
 #ifndef VIEWER_MIRRORS_H
 #define VIEWER_MIRRORS_H
 

@@ -93,7 +93,7 @@ relume_status object_materials_program(const struct program **out, struct object
                                   sky ? "#define SKY\n" : NULL, btf_uniforms, BTF_COUNT, m->log);
 }
 
-// Lights that one pass sums over: llvmpipe ends all loops of a pixel, without a word, after 65535
+// Lights that one draw sums over: llvmpipe ends all loops of a pixel, without a word, after 65535
 // rounds. A model goes through its components, at most once for each of three views, or follows two
 // rays, for four texels at each of up to eight places.
 static int lights_at_once(const struct btf_level *l)

@@ -116,7 +116,7 @@ static relume_status need_targets(struct objects_drawer *t, int width, int heigh
     return status ? status : target_need(&t->other, t->gl, like->width, like->height, t->log);
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- draws
 
 static void set_uniforms(const struct objects_drawer *t, const struct program *program, int part,
                          const struct btf_material *m)
@@ -159,7 +159,7 @@ static relume_status use_material(const struct program **out, struct objects_dra
 }
 
 // Mirrors and what is baked are no sums over light samples.
-static bool has_own_pass(const struct objects_drawer *t, int material)
+static bool has_own_draw(const struct objects_drawer *t, int material)
 {
     const struct relume_object_material *m = &relume_objects_info(t->objects)->material[material];
     return m->mirror || m->baked;
@@ -169,7 +169,7 @@ static relume_status shade_part(struct objects_drawer *t, int part, int material
 {
     const struct program *program;
     const struct gl *gl = t->gl;
-    if (has_own_pass(t, material))
+    if (has_own_draw(t, material))
         return RELUME_OK;
     relume_status status = use_material(&program, t, part, material, false);
     if (status)
@@ -193,7 +193,7 @@ relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int m
     const struct sky_map *map;
     const struct program *program;
     const struct gl *gl = t->gl;
-    if (has_own_pass(t, material))
+    if (has_own_draw(t, material))
         return RELUME_OK;
     relume_status status = object_materials_need(&t->materials, material);
     struct btf_material *m = &t->materials.material[material];

@@ -1,5 +1,5 @@
 // gl.c - the functions of OpenGL 3.3 core that the viewer uses, loaded from the context; compute
-// passes of 4.3 where there are any
+// compute shaders of 4.3 where there are any
 #include "gl/gl.h"
 
 #include "cli/program/say.h"

@@ -1,5 +1,5 @@
 // gl.h - the functions of OpenGL 3.3 core that the viewer uses, loaded from the context; compute
-// passes of 4.3 where there are any
+// compute shaders of 4.3 where there are any
 //
 // No loader library: libepoxy and its kin do not see an OSMesa context. The list below is the whole
 // of OpenGL here; a call is gl->DrawArrays(...).
@@ -83,7 +83,7 @@
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
     X(PFNGLVIEWPORTPROC, Viewport)
 
-// Of OpenGL 4.3, for compute passes: all of them or none.
+// Of OpenGL 4.3, for compute shaders: all of them or none.
 #define GL_COMPUTE_FUNCTIONS(X)                                                                    \
     X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)                                                 \
     X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                                                   \
@@ -97,7 +97,7 @@ struct gl {
 #undef GL_MEMBER
     bool compute;                                  // GL_COMPUTE_FUNCTIONS are there
     int shared_bytes;                              // compute: of a work group
-    long storage_bytes;                            // compute: of a buffer of a pass
+    long storage_bytes;                            // compute: of a buffer of a shader
     int max_layers;                                // of an array texture, at least 256
     int max_texture;                               // pixels along one side
     int max_buffer;                                // texels of a buffer texture
@@ -115,7 +115,7 @@ relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
 // has lost everything.
 relume_status gl_check(const struct gl *gl, const char *doing, const struct relume_log *log);
 
-// A buffer for compute passes; `data` may be NULL.
+// A buffer for compute shaders; `data` may be NULL.
 GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data);
 
 #endif

@@ -120,8 +120,8 @@ relume_status program_create_fragments(const struct fragment_program *list, size
     return status;
 }
 
-relume_status program_create_passes(const struct compute_pass *list, size_t n, const struct gl *gl,
-                                    const struct relume_log *log)
+relume_status program_create_shaders(const struct compute_shader *list, size_t n,
+                                     const struct gl *gl, const struct relume_log *log)
 {
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < n; i++)

@@ -39,19 +39,19 @@ relume_status program_create_variant(struct program *program, const struct gl *g
 relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
                                   const char *fragment, const char *const *uniforms, int n,
                                   const struct relume_log *log);
-// A compute pass ("glare_power.comp"); `defines` (may be NULL) are lines that follow the first.
+// A compute shader ("glare_power.comp"); `defines` (may be NULL) are lines that follow the first.
 relume_status program_create_compute(struct program *program, const struct gl *gl,
                                      const char *compute, const char *defines,
                                      const char *const *uniforms, int n,
                                      const struct relume_log *log);
 // Several of them, up to the first that fails.
-struct compute_pass {
+struct compute_shader {
     struct program *program;
     const char *name, *const *uniforms;
     int count;  // of uniforms
 };
-relume_status program_create_passes(const struct compute_pass *list, size_t n, const struct gl *gl,
-                                    const struct relume_log *log);
+relume_status program_create_shaders(const struct compute_shader *list, size_t n,
+                                     const struct gl *gl, const struct relume_log *log);
 void program_destroy(struct program *program, const struct gl *gl);
 
 static inline void gl_set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
@@ -59,7 +59,7 @@ static inline void gl_set_vec3(const struct gl *gl, GLint at, struct relume_vec3
     gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
 }
 
-// The buffer that passes see at that binding.
+// The buffer that shaders see at that binding.
 static inline void gl_bind(const struct gl *gl, GLuint binding, GLuint buffer)
 {
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);

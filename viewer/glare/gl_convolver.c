@@ -1,4 +1,4 @@
-// gl_convolver.c - a frame convolved with an eye's pattern by compute passes
+// gl_convolver.c - a frame convolved with an eye's pattern by compute shaders
 #include "glare/gl_convolver.h"
 
 #include "gl/program.h"
@@ -34,7 +34,7 @@ static struct gl_convolver plan(const struct gl *gl, const struct relume_psf_geo
     return c;
 }
 
-static bool has_room(const struct gl *gl, const struct gl_convolver *c, int field)
+static bool fits_card(const struct gl *gl, const struct gl_convolver *c, int field)
 {
     const double side = 2.0 * c->reach + 1, vec4 = 4 * sizeof(float);
     const double planes = 2.0 * c->size[0] * c->size[1] * 2 * sizeof(float);
@@ -77,7 +77,7 @@ static const char *const picture_uniforms[] = {"size", "factor"};
 static relume_status make_programs(struct gl_convolver *c, const struct gl *gl,
                                    const struct relume_log *log)
 {
-    const struct compute_pass list[] = {
+    const struct compute_shader list[] = {
         {&c->frame, "glare_frame.comp", frame_uniforms, FRAME_COUNT},
         {&c->rows, "glare_rows.comp", share_uniforms, SHARE_COUNT},
         {&c->columns, "glare_columns.comp", share_uniforms, SHARE_COUNT},
@@ -86,7 +86,7 @@ static relume_status make_programs(struct gl_convolver *c, const struct gl *gl,
         {&c->product, "glare_product.comp", product_uniforms, PRODUCT_COUNT},
         {&c->picture, "glare_picture.comp", picture_uniforms, PICTURE_COUNT},
     };
-    return program_create_passes(list, sizeof list / sizeof *list, gl, log);
+    return program_create_shaders(list, sizeof list / sizeof *list, gl, log);
 }
 
 relume_status gl_convolver_create(struct gl_convolver *c, const struct gl *gl,
@@ -95,7 +95,7 @@ relume_status gl_convolver_create(struct gl_convolver *c, const struct gl *gl,
                                   bool *fits, const struct relume_log *log)
 {
     *c = plan(gl, shape, view, width, height);
-    *fits = has_room(gl, c, shape->field);
+    *fits = fits_card(gl, c, shape->field);
     if (!*fits) {
         *c = (struct gl_convolver){0};
         return RELUME_OK;

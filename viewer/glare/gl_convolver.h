@@ -1,4 +1,4 @@
-// gl_convolver.h - a frame convolved with an eye's pattern by compute passes
+// gl_convolver.h - a frame convolved with an eye's pattern by compute shaders
 #ifndef VIEWER_GL_CONVOLVER_H
 #define VIEWER_GL_CONVOLVER_H
 
@@ -31,7 +31,7 @@ struct gl_convolver_view {
 // Whether `c` is for such a frame and view.
 bool gl_convolver_fits(const struct gl_convolver *c, const struct relume_psf_geometry *shape,
                        const struct gl_convolver_view *view, int width, int height);
-// `*fits`: false when the card has no room for it; nothing is made then. RELUME_ESYSTEM.
+// `*fits`: false when the card has no memory for it; nothing is made then. RELUME_ESYSTEM.
 relume_status gl_convolver_create(struct gl_convolver *c, const struct gl *gl,
                                   const struct relume_psf_geometry *shape,
                                   const struct gl_convolver_view *view, int width, int height,

@@ -1,4 +1,4 @@
-// gl_fft.c - Fourier transforms of lines in a buffer, by compute passes
+// gl_fft.c - Fourier transforms of lines in a buffer, by compute shaders
 #include "glare/gl_fft.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-// gl_fft.h - Fourier transforms of lines in a buffer, by compute passes
+// gl_fft.h - Fourier transforms of lines in a buffer, by compute shaders
 #ifndef VIEWER_GL_FFT_H
 #define VIEWER_GL_FFT_H
 
@@ -18,7 +18,7 @@ struct gl_fft {
 };
 
 // The least length of at least n that can be transformed, at least 64: 4, 5, 6 or 8 times a power
-// of two. 0 when the card's groups have no room for such a line.
+// of two. 0 when the card's groups have no memory for such a line.
 int gl_fft_length(const struct gl *gl, int n);
 
 // Lines of complex numbers (two floats) in buffer binding 0: `lines` of them from `first` on, in
@@ -28,7 +28,7 @@ struct gl_fft_lines {
     int stride[3];
     bool inverse;
 };
-// In place, not normalised. Later passes see the result. RELUME_ESYSTEM.
+// In place, not normalised. Later shaders see the result. RELUME_ESYSTEM.
 relume_status gl_fft_run(struct gl_fft *fft, const struct gl *gl, const struct gl_fft_lines *lines,
                          const struct relume_log *log);
 void gl_fft_destroy(struct gl_fft *fft, const struct gl *gl);

@@ -1,4 +1,4 @@
-// gl_glare.c - a frame as an eye sees it, by compute passes of OpenGL 4.3
+// gl_glare.c - a frame as an eye sees it, by compute shaders of OpenGL 4.3
 #include "glare/gl_glare.h"
 #include "relight/eye/veil.h"
 

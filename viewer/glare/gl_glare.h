@@ -1,4 +1,4 @@
-// gl_glare.h - a frame as an eye sees it, by compute passes of OpenGL 4.3
+// gl_glare.h - a frame as an eye sees it, by compute shaders of OpenGL 4.3
 #ifndef VIEWER_GL_GLARE_H
 #define VIEWER_GL_GLARE_H
 
@@ -12,7 +12,7 @@ struct gl_glare {
     struct program watch;
     struct target before;  // the frame that was watched last
     GLuint results;
-    int room;  // of `results`, work groups
+    int capacity;  // of `results`, work groups
 };
 void gl_glare_destroy(struct gl_glare *g, const struct gl *gl);
 
@@ -32,7 +32,7 @@ relume_status gl_glare_prepare(struct gl_glare *g, const struct gl *gl,
 // As gl_psf_update.
 relume_status gl_glare_update(struct gl_glare *g, const struct gl *gl, const relume_eye *eye,
                               const struct relume_log *log);
-// `frame` as it was watched, into `seen`. `*fits` is false when the card has no room; nothing was
+// `frame` as it was watched, into `seen`. `*fits` is false when the card has no memory; nothing was
 // done then. RELUME_ESYSTEM.
 relume_status gl_glare_apply(struct gl_glare *g, const struct gl *gl, const struct target *seen,
                              const struct target *frame, const struct gl_glare_facts *facts,

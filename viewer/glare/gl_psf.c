@@ -1,4 +1,4 @@
-// gl_psf.c - the pattern of one point source by compute passes: what relume_psf_update does
+// gl_psf.c - the pattern of one point source by compute shaders: what relume_psf_update does
 #include "glare/gl_psf.h"
 
 #include "gl/program.h"
@@ -50,13 +50,13 @@ static const char *const colour_uniforms[] = {"size", "taps", "field", "fade_rad
 static relume_status make_programs(struct gl_psf *psf, const struct gl *gl,
                                    const struct relume_log *log)
 {
-    const struct compute_pass list[] = {
+    const struct compute_shader list[] = {
         {&psf->wave, "glare_wave.comp", wave_uniforms, WAVE_COUNT},
         {&psf->power, "glare_power.comp", power_uniforms, POWER_COUNT},
         {&psf->smear, "glare_smear.comp", smear_uniforms, SMEAR_COUNT},
         {&psf->colour, "glare_colour.comp", colour_uniforms, COLOUR_COUNT},
     };
-    return program_create_passes(list, sizeof list / sizeof *list, gl, log);
+    return program_create_shaders(list, sizeof list / sizeof *list, gl, log);
 }
 
 // A texel's coverage is an average over it, which lowers high frequencies by a known factor.

@@ -1,4 +1,4 @@
-// gl_psf.h - the pattern of one point source by compute passes: what relume_psf_update does
+// gl_psf.h - the pattern of one point source by compute shaders: what relume_psf_update does
 #ifndef VIEWER_GL_PSF_H
 #define VIEWER_GL_PSF_H
 
@@ -21,7 +21,8 @@ struct gl_psf {
     double light;                // share that the lids let through
 };
 
-// Whether the card can: it has transforms of that size, all is in one plane, buffers have room.
+// Whether the card can: it has transforms of that size, all is in one plane, buffers are large
+// enough.
 bool gl_psf_fits(const struct gl *gl, const struct relume_psf_params *params);
 // RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EINVAL.
 relume_status gl_psf_create(struct gl_psf *psf, const struct gl *gl,

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LIBRARY_SIZE = 512, PASSES_SIZE = 1536 };
+enum { LIBRARY_SIZE = 512, GPU_SIZE = 1536 };
 static const double field_deg = 4;  // of the pattern: the ring of the lens's fibres is within
 static const double most_nits = 1e12;
 static const double shortest_s = 0.1;  // of a loop: three patterns
@@ -60,18 +60,18 @@ static void leave_it_to_library(struct glare *g, const char *why)
 }
 
 static struct relume_psf_params pattern_of(const struct glare *g, const struct observer *observer,
-                                           bool passes)
+                                           bool by_gpu)
 {
     return (struct relume_psf_params){.log = g->log,
                                       .threads = g->threads,
                                       .size = g->size  ? g->size
-                                              : passes ? PASSES_SIZE
+                                              : by_gpu ? GPU_SIZE
                                                        : LIBRARY_SIZE,
                                       .half_field_deg = g->field_deg > 0 ? g->field_deg : field_deg,
                                       .parts_off = observer->parts_off};
 }
 
-static bool can_pass(struct glare *g, const struct observer *observer)
+static bool can_use_gpu(struct glare *g, const struct observer *observer)
 {
     const struct relume_psf_params params = pattern_of(g, observer, true);
 
@@ -82,18 +82,18 @@ static bool can_pass(struct glare *g, const struct observer *observer)
     return !g->by_library;
 }
 
-static relume_status prepare_eye(struct glare *g, const struct observer *observer, bool passes)
+static relume_status prepare_eye(struct glare *g, const struct observer *observer, bool by_gpu)
 {
-    if (g->ready && g->passes == passes && g->parts_off == observer->parts_off)
+    if (g->ready && g->by_gpu == by_gpu && g->parts_off == observer->parts_off)
         return RELUME_OK;
-    const struct relume_psf_params params = pattern_of(g, observer, passes);
+    const struct relume_psf_params params = pattern_of(g, observer, by_gpu);
     forget_pattern(g);
     relume_status status =
-        passes ? gl_glare_prepare(&g->card, g->gl, &params) : relume_glare_create(&g->library.work);
-    if (!status && !passes)
+        by_gpu ? gl_glare_prepare(&g->card, g->gl, &params) : relume_glare_create(&g->library.work);
+    if (!status && !by_gpu)
         status = relume_psf_create(&g->library.psf, &params);
     g->ready = !status;
-    g->passes = passes;
+    g->by_gpu = by_gpu;
     g->parts_off = observer->parts_off;
     return status;
 }
@@ -171,7 +171,7 @@ static relume_status live_and_update(struct glare *g, const struct frame_request
     if (status || (!moved && g->fresh))
         return status;
     g->fresh = false;
-    return g->passes ? gl_glare_update(&g->card, g->gl, g->eye, g->log)
+    return g->by_gpu ? gl_glare_update(&g->card, g->gl, g->eye, g->log)
                      : relume_psf_update(g->library.psf, g->eye);
 }
 
@@ -267,10 +267,10 @@ static relume_status see_by_library(struct glare *g, const struct target *frame,
     return apply(g, &view, same);
 }
 
-// ---------------------------------------------------------------- by passes
+// ---------------------------------------------------------------- on the GPU
 
-static relume_status see_by_passes(struct glare *g, const struct target *frame,
-                                   const struct frame_request *q, bool *fits)
+static relume_status see_by_gpu(struct glare *g, const struct target *frame,
+                                const struct frame_request *q, bool *fits)
 {
     struct gl_glare_facts facts;
     *fits = true;
@@ -288,15 +288,15 @@ static relume_status see_by_passes(struct glare *g, const struct target *frame,
 
 relume_status glare_see(struct glare *g, const struct target *frame, const struct frame_request *q)
 {
-    const bool passes = !q->observer.cycle_s &&
+    const bool by_gpu = !q->observer.cycle_s &&
                         (q->observer.mode == OBSERVER_AUTO || q->observer.mode == OBSERVER_FFT) &&
-                        can_pass(g, &q->observer);
+                        can_use_gpu(g, &q->observer);
     bool fits = true;
     relume_status status = need_seen(g, frame->width, frame->height);
     if (!status)
-        status = prepare_eye(g, &q->observer, passes);
+        status = prepare_eye(g, &q->observer, by_gpu);
     if (!status)
-        status = passes ? see_by_passes(g, frame, q, &fits) : see_by_library(g, frame, q);
+        status = by_gpu ? see_by_gpu(g, frame, q, &fits) : see_by_library(g, frame, q);
     g->fresh = !status;
     if (status || fits)
         return status;

@@ -1,6 +1,6 @@
 // glare.h - the frame as a living eye sees it: the eye in time, its pattern, the picture
 //
-// Compute passes do all of it where OpenGL has them (gl_glare.h), else the library does; where
+// Compute shaders do all of it where OpenGL has them (gl_glare.h), else the library does; where
 // OpenGL is software the library is faster and comes first. Bright spots alone (OBSERVER_BILLBOARD,
 // OBSERVER_HYBRID) are the library's.
 #ifndef VIEWER_GLARE_H
@@ -30,11 +30,11 @@ struct glare {
     int threads;                           // 0: all cores
     int size;                              // texels of the pattern; 0: what suits
     double field_deg;                      // to either side of it; 0: 4
-    bool by_library;                       // not by passes
+    bool by_library;                       // not on the GPU
 
     relume_eye *eye;     // NULL: nothing was looked at yet
     double eye_s;        // of the app, that the eye has reached
-    bool ready, passes;  // the pattern is made, by passes
+    bool ready, by_gpu;  // the pattern is made, on the GPU
     unsigned parts_off;  // that it leaves out
     struct glare_library library;
     struct glare_loop loop;

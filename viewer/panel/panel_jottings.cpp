@@ -184,16 +184,16 @@ static void draw_note(ImDrawList *draw, const app *app, const relume_note &note,
                       float scale)
 {
     const float width = (strong ? 2.5f : 1.5f) * scale, radius = (strong ? 5.0f : 3.5f) * scale;
-    for (int pass = 0; pass < 2; pass++) {
-        const ImU32 colour = pass ? ink : halo;
-        const float wide = pass ? width : width + 2 * scale;
+    for (int layer = 0; layer < 2; layer++) {
+        const ImU32 colour = layer ? ink : halo;
+        const float wide = layer ? width : width + 2 * scale;
         const bool closed = note.kind == RELUME_NOTE_POLYGON && note.places > 2;
         for (int i = 0; i + 1 < note.places + (int)closed; i++)
             edge(draw, app, note, i, colour, wide);
         ImVec2 p;
         for (int i = 0; i < note.places; i++)
             if ((strong || note.kind == RELUME_NOTE_POINT) && at(&p, app, note, i))
-                draw->AddCircleFilled(p, radius + (pass ? 0 : scale), colour);
+                draw->AddCircleFilled(p, radius + (layer ? 0 : scale), colour);
     }
 }
 

@@ -9,11 +9,11 @@
 #include "relit/gl_relighter_parts.h"
 #include "relit/moving.h"
 
-static relume_status need_room(struct gl_relighter *r, const struct relit_view *v)
+static relume_status need_targets(struct gl_relighter *r, const struct relit_view *v)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < 2; i++)
-        status = passes_fit(r, &r->exchanged[i], v);
+        status = draws_fit(r, &r->exchanged[i], v);
     return status;
 }
 
@@ -33,7 +33,7 @@ static relume_status relight_alone(const struct target **out, struct gl_relighte
         return linear_copy_picture(out, r, v, environment, 1);
     }
     *out = &r->coded;
-    return passes_environment(r, v, environment);
+    return draws_environment(r, v, environment);
 }
 
 static relume_status exchange(struct gl_relighter *r, struct relit_view *v,
@@ -80,17 +80,17 @@ static relume_status add_one(struct gl_relighter *r, struct relit_view *v,
     if (status)
         return status;
     target_begin(&r->exchanged[0], r->gl);
-    passes_guarded(r, v, whole);
+    draws_guarded(r, v, whole);
     for (int i = 0; !status && i < count; i++)
         status = exchange(r, v, &source[i], &r->exchanged[i % 2], &r->exchanged[(i + 1) % 2]);
     target_resume(&v->relit, r->gl);
-    passes_develop(r, v, &r->exchanged[count % 2], linear, one);
+    draws_develop(r, v, &r->exchanged[count % 2], linear, one);
     return status;
 }
 
 relume_status bright_sources_relight(struct gl_relighter *r, struct relit_view *v)
 {
-    relume_status status = need_room(r, v);
+    relume_status status = need_targets(r, v);
     for (int i = 0; !status && i < r->lights; i++)
         if (gl_relighter_is_environment(r->light[i].kind))
             status = add_one(r, v, &r->light[i]);

@@ -98,7 +98,7 @@ static relume_status load(struct depths *d, int view, const struct relume_rect *
     return status;
 }
 
-static void make_room(struct depths *d)
+static void drop_excess(struct depths *d)
 {
     int oldest;
     while ((oldest = budget_excess(&d->memory, 0)) >= 0)
@@ -132,7 +132,7 @@ static relume_status use_views(struct depths *d, const bool *needed, const struc
         range[0] = fmin(range[0], d->range[i][0]);
         range[1] = fmax(range[1], d->range[i][1]);
     }
-    make_room(d);
+    drop_excess(d);
     return status;
 }
 

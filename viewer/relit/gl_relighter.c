@@ -56,7 +56,7 @@ static void release(struct gl_relighter *r, struct relit_view *v)
 }
 
 // Views that this frame does not use leave, the longest unused first, until `bytes` more fit.
-static void make_room(struct gl_relighter *r, size_t bytes)
+static void free_bytes(struct gl_relighter *r, size_t bytes)
 {
     int oldest;
     while ((oldest = budget_excess(&r->memory, bytes)) >= 0)
@@ -67,7 +67,7 @@ static relume_status keep(struct gl_relighter *r, int view, const struct relume_
 {
     struct relit_view *v = &r->view[view];
     const size_t bytes = gl_relighter_view_bytes(codes);
-    make_room(r, bytes);
+    free_bytes(r, bytes);
     v->present = true;
     budget_set(&r->memory, view, bytes);
     relume_status status = target_create(&v->relit, r->gl, codes->width, codes->height, r->log);
@@ -223,7 +223,7 @@ static relume_status relight_by_library(struct gl_relighter *r, struct relit_vie
     return RELUME_OK;
 }
 
-// Those of passes are gone.
+// Those of draws are gone.
 static relume_status need_lent(struct gl_relighter *r, struct relit_view *v)
 {
     const int view = (int)(v - r->view);
@@ -236,14 +236,14 @@ static relume_status need_lent(struct gl_relighter *r, struct relit_view *v)
     return status;
 }
 
-// Lights of some kinds, beside passes.
+// Lights of some kinds, beside draws.
 static relume_status add_by_library(struct gl_relighter *r, struct relit_view *v,
                                     bool (*is)(enum relume_light_kind))
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
     struct relume_light *light = malloc((size_t)r->lights * sizeof *light);
-    relume_status status = light ? passes_scratch(r, v) : RELUME_ENOMEM;
+    relume_status status = light ? draws_scratch(r, v) : RELUME_ENOMEM;
     int n = 0;
     for (int i = 0; !status && i < r->lights; i++)
         if (is(r->light[i].kind))
@@ -256,7 +256,7 @@ static relume_status add_by_library(struct gl_relighter *r, struct relit_view *v
     if (status)
         return status;
     target_resume(&v->relit, r->gl);
-    passes_develop(r, v, &r->coded, linear, one);
+    draws_develop(r, v, &r->coded, linear, one);
     return RELUME_OK;
 }
 
@@ -318,7 +318,7 @@ static relume_status add_near(struct gl_relighter *r, struct relit_view *v)
     if (!status)
         status = need_surface(r, v);
     if (!status && moves)
-        status = passes_scratch(r, v);
+        status = draws_scratch(r, v);
     target_resume(&v->relit, r->gl);
     for (int i = 0; !status && i < r->lights; i++)
         if (relume_light_is_near(r->light[i].kind))
@@ -364,8 +364,8 @@ static relume_status relight_by_passes(struct gl_relighter *r, struct relit_view
     if (status)
         return status;
     target_begin(&v->relit, r->gl);
-    passes_begin(r);
-    status = passes_distant(r, v);
+    draws_begin(r);
+    status = draws_distant(r, v);
     if (!status)
         status = add_environments(r, v);
     count_moving(r, v, before);
@@ -395,7 +395,7 @@ relume_status gl_relighter_create(struct gl_relighter *r, const struct gl *gl,
     moving_create(&r->moving, gl, log);
     r->view = calloc((size_t)views, sizeof *r->view);
     const bool good = budget_create(&r->memory, views, (uint64_t)1 << 30) && r->view;
-    relume_status status = good ? passes_create(r) : RELUME_ENOMEM;
+    relume_status status = good ? draws_create(r) : RELUME_ENOMEM;
     if (!status)
         status = nearby_create(&r->near, gl, log);
     if (status)
@@ -413,7 +413,7 @@ void gl_relighter_destroy(struct gl_relighter *r)
     relume_relighter_destroy(&r->library);
     linear_copy_destroy(r);
     bright_sources_destroy(r);
-    passes_destroy(r);
+    draws_destroy(r);
     nearby_destroy(&r->near);
     moving_destroy(&r->moving);
     budget_destroy(&r->memory);

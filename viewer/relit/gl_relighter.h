@@ -1,10 +1,10 @@
 // gl_relighter.h - views of a file on the GPU: codes are uploaded once, relit when the lights
 // change
 //
-// Linear-domain codes fold all distant lights into one weight vector and one pass; display-domain
-// codes take two small passes for each light: the dot product, then decoding and adding in linear
+// Linear-domain codes fold all distant lights into one weight vector and one draw; display-domain
+// codes take two small draws for each light: the dot product, then decoding and adding in linear
 // light. Environments use a linear copy of display-domain codes, made once (relume_refit). Near
-// lights are a pass each (nearby.h). What moves (moving.h) takes each light alone, and each bright
+// lights are a draw each (nearby.h). What moves (moving.h) takes each light alone, and each bright
 // source of an environment. Where OpenGL is software the library does all of it, several times
 // faster (relume_relighter).
 #ifndef VIEWER_GL_RELIGHTER_H
@@ -24,7 +24,7 @@ relume_status gl_relighter_begin(struct gl_relighter *relighter, const struct re
 // What lights point at may have gone: nothing that was kept for them is used again.
 void gl_relighter_forget(struct gl_relighter *relighter);
 // The linear texture of `view`, valid during this frame. Views that this frame has not asked for
-// may leave the graphics memory to make room.
+// may leave the graphics memory for others.
 relume_status gl_relighter_view(const struct target **out, struct gl_relighter *relighter,
                                 int view);
 

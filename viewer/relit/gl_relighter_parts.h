@@ -31,26 +31,26 @@ static inline bool gl_relighter_is_distant(enum relume_light_kind kind)
 }
 
 // Passes add to what the target in use holds, once this was called.
-void passes_begin(const struct gl_relighter *r);
-relume_status passes_create(struct gl_relighter *r);
-void passes_destroy(struct gl_relighter *r);
+void draws_begin(const struct gl_relighter *r);
+relume_status draws_create(struct gl_relighter *r);
+void draws_destroy(struct gl_relighter *r);
 // Everything distant but environments on codes of the display domain.
-relume_status passes_distant(struct gl_relighter *r, struct relit_view *view);
+relume_status draws_distant(struct gl_relighter *r, struct relit_view *view);
 // A target as large as the view, and r->coded.
-relume_status passes_fit(const struct gl_relighter *r, struct target *target,
-                         const struct relit_view *view);
-relume_status passes_scratch(struct gl_relighter *r, const struct relit_view *view);
+relume_status draws_fit(const struct gl_relighter *r, struct target *target,
+                        const struct relit_view *view);
+relume_status draws_scratch(struct gl_relighter *r, const struct relit_view *view);
 // `coded` decoded by `display`, times `rgb`, into the view.
-void passes_develop(const struct gl_relighter *r, const struct relit_view *view,
-                    const struct target *coded, struct relume_transfer display, const float rgb[3]);
+void draws_develop(const struct gl_relighter *r, const struct relit_view *view,
+                   const struct target *coded, struct relume_transfer display, const float rgb[3]);
 
 // `picture`, linear, without what is below 0 (keep_above_zero), into the view or another target in
 // use of its size.
-void passes_guarded(const struct gl_relighter *r, const struct relit_view *view,
-                    const struct target *picture);
+void draws_guarded(const struct gl_relighter *r, const struct relit_view *view,
+                   const struct target *picture);
 // What an environment shows, alone, in r->coded, with what is below 0: of linear codes.
-relume_status passes_environment(struct gl_relighter *r, struct relit_view *view,
-                                 const struct relume_light *light);
+relume_status draws_environment(struct gl_relighter *r, struct relit_view *view,
+                                const struct relume_light *light);
 
 // Environments on codes of the display domain, by their linear copy: a picture, which holds until
 // the next one, ...

@@ -28,7 +28,7 @@ struct relit_view {
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
     struct nearby_view near;
-    struct moving_view moving;        // of `shadows`, where passes relight it
+    struct moving_view moving;        // of `shadows`, where draws relight it
     const struct relume_codes *lent;  // by the source, where the library relights it; else NULL
     struct relume_image surface;      // then; empty: not known yet
     relume_shadows *shadows;          // NULL: not asked for yet, or none
@@ -52,7 +52,7 @@ struct gl_relighter {
     struct program dot, develop, lookup;
     struct nearby near;
     struct moving moving;
-    bool by_library;  // not by passes: where OpenGL is software. May be set before the first
+    bool by_library;  // not on the GPU: where OpenGL is software. May be set before the first
                       // view is asked for
     relume_relighter *library;    // NULL: not needed yet
     int threads;                  // of it; 0: all cores

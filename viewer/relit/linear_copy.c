@@ -58,7 +58,7 @@ relume_status linear_copy_picture(const struct target **out, struct gl_relighter
         status = gl_relighter_begin(r->linear, environments, n);
     if (!status)
         status = gl_relighter_view(out, r->linear, (int)(v - r->view));
-    passes_begin(r);
+    draws_begin(r);
     return status;
 }
 
@@ -79,7 +79,7 @@ relume_status linear_copy_relight(struct gl_relighter *r, struct relit_view *v)
     if (status)
         return status;
     target_resume(&v->relit, r->gl);
-    passes_develop(r, v, copy, linear, one);
+    draws_develop(r, v, copy, linear, one);
     return RELUME_OK;
 }
 

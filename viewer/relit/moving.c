@@ -85,7 +85,7 @@ static float finite_of(float far)
     return far < BACKGROUND ? far : BACKGROUND;
 }
 
-static void upload_stage(struct moving_view *v, const struct gl *gl, float *room)
+static void upload_stage(struct moving_view *v, const struct gl *gl, float *scratch)
 {
     const struct relume_shadows_stage *s = &v->stage;
     const size_t n = (size_t)s->width * (size_t)s->height;
@@ -93,32 +93,33 @@ static void upload_stage(struct moving_view *v, const struct gl *gl, float *room
     const int columns = (s->width + RELUME_SHADOW_TILE - 1) / RELUME_SHADOW_TILE;
     const int rows = (s->height + RELUME_SHADOW_TILE - 1) / RELUME_SHADOW_TILE;
     for (size_t i = 0; i < n; i++) {
-        room[2 * i] = finite_of(s->far[i]);
-        room[2 * i + 1] = s->thick[i];
+        scratch[2 * i] = finite_of(s->far[i]);
+        scratch[2 * i + 1] = s->thick[i];
     }
-    upload(gl, &v->surface, GL_RG32F, GL_RG, s->width, s->height, room);
+    upload(gl, &v->surface, GL_RG32F, GL_RG, s->width, s->height, scratch);
     for (size_t i = 0; i < 2 * corners; i++)
-        room[i] = finite_of(s->span[i]);
-    upload(gl, &v->span, GL_RG32F, GL_RG, s->width + 1, s->height + 1, room);
+        scratch[i] = finite_of(s->span[i]);
+    upload(gl, &v->span, GL_RG32F, GL_RG, s->width + 1, s->height + 1, scratch);
     for (size_t i = 0; i < (size_t)columns * (size_t)rows; i++)
-        room[i] = finite_of(s->front[i]);
-    upload(gl, &v->front, GL_R32F, GL_RED, columns, rows, room);
+        scratch[i] = finite_of(s->front[i]);
+    upload(gl, &v->front, GL_R32F, GL_RED, columns, rows, scratch);
 }
 
 // Eight numbers a pixel as two texels; of background no colour.
-static void upload_model(struct moving_view *v, const struct gl *gl, float *room)
+static void upload_model(struct moving_view *v, const struct gl *gl, float *scratch)
 {
     const struct relume_shadows_stage *s = &v->stage;
     const size_t n = (size_t)s->width * (size_t)s->height;
     for (size_t half = 0; half < 2; half++) {
         for (size_t i = 0; i < n; i++)
             for (size_t c = 0; c < 4; c++)
-                room[4 * i + c] = s->gloss              ? s->gloss[8 * i + 4 * half + c]
-                                  : half                ? s->matte[7 * i + 3 + c]
-                                  : c == 3              ? 0.0f
-                                  : isfinite(s->far[i]) ? s->matte[7 * i + c]
-                                                        : 0.0f;
-        upload(gl, half ? &v->matte : &v->colours, GL_RGBA32F, GL_RGBA, s->width, s->height, room);
+                scratch[4 * i + c] = s->gloss              ? s->gloss[8 * i + 4 * half + c]
+                                     : half                ? s->matte[7 * i + 3 + c]
+                                     : c == 3              ? 0.0f
+                                     : isfinite(s->far[i]) ? s->matte[7 * i + c]
+                                                           : 0.0f;
+        upload(gl, half ? &v->matte : &v->colours, GL_RGBA32F, GL_RGBA, s->width, s->height,
+               scratch);
     }
 }
 
@@ -164,18 +165,18 @@ relume_status moving_view_create(struct moving_view *v, struct moving *m, relume
                 s->width, s->height, most, most);
     if (!status)
         status = need_programs(m, v);
-    float *room = status ? NULL : malloc(4 * pixels * sizeof *room);
+    float *scratch = status ? NULL : malloc(4 * pixels * sizeof *scratch);
     v->reached = calloc((size_t)v->lights, sizeof *v->reached);
-    if (!status && !(room && v->reached))
+    if (!status && !(scratch && v->reached))
         status = RELUME_ENOMEM;
     if (!status) {
         if (!s->gloss)
-            upload_stage(v, m->gl, room);
-        upload_model(v, m->gl, room);
+            upload_stage(v, m->gl, scratch);
+        upload_model(v, m->gl, scratch);
         v->bytes = (s->gloss ? 8 : 13) * pixels * sizeof(float);
         status = gl_check(m->gl, "uploading what moves", m->log);
     }
-    free(room);
+    free(scratch);
     if (status)
         moving_view_destroy(v, m->gl);
     return status;

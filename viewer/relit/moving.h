@@ -23,11 +23,11 @@ void moving_view_destroy(struct moving_view *view, const struct gl *gl);
 relume_status moving_draw(struct moving *moving, struct moving_view *view,
                           const struct moving_picture *picture, const struct target *into);
 
-// Whether passes can show near lights of views with traced shadows: not without triangles between
+// Whether draws can show near lights of views with traced shadows: not without triangles between
 // the captured lights, nor with too many for a texture. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status moving_near_can(bool *can, struct moving *moving, const struct moving_view *view,
                               const relume_coder *coder);
-// The same as moving_draw for a near light whose picture is linear, where passes can show it.
+// The same as moving_draw for a near light whose picture is linear, where draws can show it.
 // `positions`: nearby_view.
 relume_status moving_draw_near(struct moving *moving, const struct moving_view *view,
                                const struct moving_picture *picture,

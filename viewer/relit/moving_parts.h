@@ -40,7 +40,7 @@ enum shown_uniform {
 #define SHOWN_NAMES                                                                                \
     "rectangle", "frame_size", "coded", "coding.curve", "coding.gamma", "times", "display.curve",  \
         "display.gamma", "rgb", "origin", "exchanges", "whole", "colours", "matte"
-// Texture units of the latter, then of a pass's own.
+// Texture units of the latter, then of a draw's own.
 enum { MOVING_UNIT_CODED, MOVING_UNIT_WHOLE, MOVING_UNIT_COLOURS, MOVING_UNIT_MATTE, MOVING_UNITS };
 
 // Set those of the program in use, `at` being where its list of them begins; three textures are

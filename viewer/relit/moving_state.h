@@ -14,7 +14,7 @@ struct moving_near {
     struct program program;
     bool ready;             // what follows is made
     GLuint triangles;       // of the captured lights ...
-    int triangle_count;     // ... 0: passes cannot show near lights
+    int triangle_count;     // ... 0: draws cannot show near lights
     GLuint border, lights;  // of the captured zone; directions of the captured lights
     GLuint patches;         // of the area light in use
     struct light_uniforms uniforms;
@@ -30,7 +30,7 @@ struct moving {
     GLuint arrives;      // texture: where the present light does
     GLuint lights;       // texture: the captured lights of highlights
 };
-// What the passes need to know of a view.
+// What the draws need to know of a view.
 struct moving_view {
     relume_shadows *shadows;  // borrowed; NULL: nothing moves
     struct relume_shadows_stage stage;

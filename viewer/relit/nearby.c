@@ -1,4 +1,4 @@
-// nearby.c - lights that stand near, on the GPU: each is a pass that evaluates the basis at every
+// nearby.c - lights that stand near, on the GPU: each is a draw that evaluates the basis at every
 // pixel's own direction
 #include "relit/nearby.h"
 

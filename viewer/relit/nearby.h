@@ -1,4 +1,4 @@
-// nearby.h - lights that stand near, on the GPU: each is a pass that evaluates the basis at every
+// nearby.h - lights that stand near, on the GPU: each is a draw that evaluates the basis at every
 // pixel's own direction
 #ifndef VIEWER_NEARBY_H
 #define VIEWER_NEARBY_H
@@ -24,7 +24,7 @@ struct nearby {
     struct light_uniforms uniforms;
 };
 
-// What the passes need to know of a view.
+// What the draws need to know of a view.
 struct nearby_view {
     struct relume_image surface;  // as relume_view_positions; empty: not known yet
     GLuint positions;             // the same as a texture, alpha 0 for background

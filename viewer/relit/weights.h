@@ -18,7 +18,7 @@ struct weights {
     float *basis;       // scratch: 3 K values of the coder
 };
 
-// Room for `planes` planes of codes by `coder`, all 0. RELUME_ENOMEM.
+// Memory for `planes` planes of codes by `coder`, all 0. RELUME_ENOMEM.
 relume_status weights_create(struct weights *weights, const relume_coder *coder, int planes);
 void weights_destroy(struct weights *weights);
 void weights_clear(struct weights *weights);

@@ -48,7 +48,7 @@ bool inspect_pick(int *view, int pixel[2], const struct app *app, const relume_s
 relume_status inspect_update(struct inspector *inspector, const struct app *app, bool *shown);
 
 // What the pixel of `codes` shows under a light of 1, given basis weights and constants as
-// relume_coder_weights has them; linear. `coefficient` has room for 3 K values.
+// relume_coder_weights has them; linear. `coefficient` holds 3 K values.
 void inspect_coefficients(float *coefficient, float colour[3], const struct relume_codes *codes,
                           int x, int y);
 void inspect_value(float rgb[3], const struct relume_codes *codes, const float *coefficient,

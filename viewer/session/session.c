@@ -177,7 +177,7 @@ static relume_status keep_lights(struct app_state *to, const struct app_state *f
     to->light = state.light;
     to->light_state = state.light_state;
     to->lights = state.lights;
-    to->room = state.room;
+    to->capacity = state.capacity;
     to->selected = state.selected;
     return RELUME_OK;
 }

@@ -19,7 +19,7 @@ enum session_relight { SESSION_AUTO, SESSION_PASSES, SESSION_LIBRARY };
 struct session_settings {
     int threads;                           // that read files; 0: all cores
     size_t vram_bytes;                     // for views
-    enum session_relight relight, glare;   // by passes or by the library
+    enum session_relight relight, glare;   // on the GPU or by the library
     int glare_size;                        // as glare.size
     const struct relume_subject *subject;  // whose eye looks; NULL: the default one
     double ui_scale;  // of the panel, as context_backend.scale; 0: what that says
@@ -68,7 +68,7 @@ relume_status session_compare(struct session *s, const char *capture);
 // stage. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status session_make_bare(struct session *s);
 relume_status session_make_stage(struct session *s);
-// Whether the library does what passes could.
+// Whether the library does what the GPU could.
 bool session_by_library(enum session_relight by, const struct gl *gl);
 // Light between objects and the scene, before a renderer takes the objects; what is said of a way
 // that was chosen, where it was another one `before`; what the panel says of the pictures.

@@ -90,7 +90,7 @@ static const char *describe_eye(char *text, size_t size, const struct glare *gla
                  glare->loop.seconds);
     else
         snprintf(text, size, "pupil %.2f mm, field %.3g cd/m2\n%.1f s, by %s", eye->pupil_mm,
-                 eye->luminance, eye->time_s, glare->passes ? "passes" : "the library");
+                 eye->luminance, eye->time_s, glare->by_gpu ? "passes" : "the library");
     return text;
 }
 

@@ -122,11 +122,11 @@ relume_status session_notes_back(struct session *s)
 {
     enum { MOST = 256 };
     static struct state_entry entry[MOST];
-    static char room[STATE_LINE_MOST];
+    static char buffer[STATE_LINE_MOST];
     const struct relume_note *note = relume_notes_get(s->app.notes->list, s->app.notes->chosen);
     int n;
     bool lit = false;
-    if (!note->state || state_line_read(entry, &n, MOST, room, note->state, NULL)) {
+    if (!note->state || state_line_read(entry, &n, MOST, buffer, note->state, NULL)) {
         session_say(s, "this note keeps no light");
         return RELUME_OK;
     }

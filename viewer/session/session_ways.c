@@ -53,8 +53,8 @@ static void describe_exchange(char text[SESSION_TEXT], struct exchanger *e, int 
 static void describe_way(char text[SESSION_TEXT], const struct gl_renderer *r, int slot, int way)
 {
     char more[SESSION_TEXT] = "";
-    if (r->exchange.passes_ms[slot] > 0.0)
-        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->exchange.passes_ms[slot]);
+    if (r->exchange.draws_ms[slot] > 0.0)
+        snprintf(more, sizeof more, "by passes, %.1f ms a frame", r->exchange.draws_ms[slot]);
     else if (r->exchange.exchanger)
         describe_exchange(more, r->exchange.exchanger, slot);
     text[0] = '\0';

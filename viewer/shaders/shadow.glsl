@@ -1,4 +1,4 @@
-// Whether the light sample of the pass reaches a point: a map of the depths that it sees, one layer, or six
+// Whether the light sample of the draw reaches a point: a map of the depths that it sees, one layer, or six
 // faces of a cube for a light sample among the objects. After cube.
 uniform sampler2DArrayShadow shadow;
 uniform mat4 shadow_clip[6];

@@ -10,7 +10,7 @@
 // Of the scene, of the objects, and of the backs of what is lit from both sides.
 enum { CARD_SCENE, CARD_OBJECTS, CARD_BACKS, CARD_TREES };
 
-// Buffers that passes see, by binding.
+// Buffers that shaders see, by binding.
 enum { CARD_NODES, CARD_SENTS, CARD_LEAVES, CARD_BLOCKS };
 
 // Zeroed it is nothing.
@@ -28,7 +28,7 @@ struct card_points {
 };
 
 // Made anew where `of` is another than it was; the panorama's pixels see `places`. RELUME_ESYSTEM
-// (there is no room for them), RELUME_ENOMEM.
+// (there is no memory for them), RELUME_ENOMEM.
 relume_status card_points_need(struct card_points *c, const struct gl *gl,
                                const struct relume_geometry *geometry, const struct target *places,
                                const relume_objects *objects, uint64_t of,

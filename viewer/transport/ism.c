@@ -1,4 +1,4 @@
-// ism.c - light gathered from virtual lights with imperfect shadow maps, by compute passes
+// ism.c - light gathered from virtual lights with imperfect shadow maps, by compute shaders
 #include "transport/ism.h"
 
 #include "cli/program/say.h"
@@ -44,13 +44,13 @@ relume_status ism_create(struct ism *s, const struct gl *gl, const struct relume
     return status;
 }
 
-static void release_room(struct ism *s)
+static void release_lights(struct ism *s)
 {
     s->gl->DeleteBuffers(1, &s->light);
     s->gl->DeleteTextures(1, &s->light_texels);
     s->gl->DeleteTextures(2, s->atlas);
     s->light = s->light_texels = s->atlas[0] = s->atlas[1] = 0;
-    s->room = 0;
+    s->capacity = 0;
 }
 
 void ism_destroy(struct ism *s)
@@ -60,11 +60,11 @@ void ism_destroy(struct ism *s)
         return;
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], s->gl);
-    release_room(s);
+    release_lights(s);
     *s = (struct ism){.gl = NULL};
 }
 
-// ---------------------------------------------------------------- room
+// ---------------------------------------------------------------- memory
 
 static int on_scene_of(int samples)
 {
@@ -120,16 +120,16 @@ relume_status ism_need(struct ism *s, int samples)
                    samples, (long long)lights);
     const bool other = s->size != size;
     const relume_status status = need_programs(s, size);
-    if (status || (!other && s->room >= lights))
+    if (status || (!other && s->capacity >= lights))
         return status;
-    release_room(s);
+    release_lights(s);
     s->light = gl_storage(gl, (size_t)lights * TEXELS_OF_LIGHT * 4 * sizeof(float), NULL);
     gl->GenTextures(1, &s->light_texels);
     texture_use(gl, 0, GL_TEXTURE_BUFFER, s->light_texels);
     gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, s->light);
     for (int i = 0; i < 2; i++)
         s->atlas[i] = make_atlas(s, (int)rows);
-    s->room = (int)lights;
+    s->capacity = (int)lights;
     return gl_check(gl, "shadow maps of virtual lights", s->log);
 }
 

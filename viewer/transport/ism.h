@@ -1,4 +1,4 @@
-// ism.h - light gathered from virtual lights with imperfect shadow maps, by compute passes. Twins:
+// ism.h - light gathered from virtual lights with imperfect shadow maps, by compute shaders. Twins:
 // world/transport/instant.c, world/transport/virtual.c, world/transport/maps.c.
 //
 // It differs from these in this: virtual lights are leaves of the trees of points, drawn by how
@@ -19,7 +19,7 @@ struct ism {
     int size;                    // of maps, in texels, that `maps` and `gather` are for
     GLuint light, light_texels;  // buffer, and the same as a texture
     GLuint atlas[2];             // of the scene, of the objects
-    int room;                    // lights, of that size
+    int capacity;                // lights, of that size
     int on_scene, all;           // of the last light
 };
 
@@ -27,7 +27,7 @@ struct ism {
 relume_status ism_create(struct ism *s, const struct gl *gl, const struct relume_log *log);
 void ism_destroy(struct ism *s);
 
-// Room for lights: `samples` on the scene for each pixel of a pattern, and a quarter more on
+// Memory for lights: `samples` on the scene for each pixel of a pattern, and a quarter more on
 // objects. RELUME_ESYSTEM with a sentence where there is none.
 relume_status ism_need(struct ism *s, int samples);
 // Points send what they do under a light, and lights are drawn from them. RELUME_ESYSTEM.

@@ -1,4 +1,4 @@
-// micro.c - light gathered by small pictures of what surrounds each place, by compute passes
+// micro.c - light gathered by small pictures of what surrounds each place, by compute shaders
 #include "transport/micro.h"
 
 #include <math.h>
@@ -84,7 +84,7 @@ relume_status micro_need(struct micro *m, int samples)
     return side == m->side ? RELUME_OK : make_picture(m, side);
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- shaders
 
 static void set_gather(const struct micro *m, const struct points_view *v,
                        const struct points_sites *s)

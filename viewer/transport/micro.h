@@ -1,4 +1,4 @@
-// micro.h - light gathered by small pictures of what surrounds each place, by compute passes.
+// micro.h - light gathered by small pictures of what surrounds each place, by compute shaders.
 // Twin: world/transport/micro.c.
 //
 // It differs from that file in this: points of objects return light as their material does even
@@ -18,7 +18,7 @@ struct micro {
     struct program gather, between;
     int side;              // of the pictures that `gather` and `picture` are for
     GLuint picture, list;  // buffers
-    int listed;            // pixels that the list has room for
+    int listed;            // pixels that the list holds
     float whole;           // of the pictures' pixels
 };
 

@@ -1,4 +1,4 @@
-// point_light.c - what trees of points send under a light, by compute passes
+// point_light.c - what trees of points send under a light, by compute shaders
 #include "transport/point_light.h"
 #include "world/object/object_points.h"
 
@@ -27,12 +27,12 @@ static const char *const up_uniforms[] = {"range"};
 relume_status point_light_create(struct point_light *p, const struct gl *gl,
                                  const struct relume_log *log)
 {
-    const struct compute_pass list[] = {
+    const struct compute_shader list[] = {
         {&p->leaves, "transport_leaves.comp", leaves_uniforms, LEAVES_COUNT},
         {&p->up, "transport_up.comp", up_uniforms, UP_COUNT},
     };
     *p = (struct point_light){.gl = gl, .log = log};
-    const relume_status status = program_create_passes(list, sizeof list / sizeof *list, gl, log);
+    const relume_status status = program_create_shaders(list, sizeof list / sizeof *list, gl, log);
     if (status)
         point_light_destroy(p);
     return status;
@@ -91,7 +91,7 @@ struct points_sites point_light_sites(int *top, const struct point_light *p,
                                  .with_objects = &p->gathered};
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- shaders
 
 static GLuint groups_of(int count)
 {

@@ -1,4 +1,4 @@
-// point_light.h - what trees of points send under a light, by compute passes; and what all ways
+// point_light.h - what trees of points send under a light, by compute shaders; and what all ways
 // that gather from points share
 #ifndef VIEWER_POINT_LIGHT_H
 #define VIEWER_POINT_LIGHT_H
@@ -18,7 +18,7 @@ relume_status point_light_create(struct point_light *p, const struct gl *gl,
                                  const struct relume_log *log);
 void point_light_destroy(struct point_light *p);
 
-// What all passes of a frame know.
+// What all shaders of a frame know.
 struct points_view {
     const struct card_points *points;
     struct relume_vec3 centre, eye;  // that captured the panorama; of the frame
@@ -57,7 +57,7 @@ enum { SITE_PLACE, SITE_FACING, SITE_KIND, SITE_CENTRE, SITE_OFF, SITE_UNIFORMS 
 // Of the program in use; takes texture units 0 and 1, and images 0 and 1.
 void points_use_sites(const struct gl *gl, const GLint *at, const struct points_view *view,
                       const struct points_sites *sites);
-// What passes have written can be read by others.
+// What shaders have written can be read by others.
 void points_wait(const struct gl *gl);
 
 #endif

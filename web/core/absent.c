@@ -43,8 +43,8 @@ bool mem_grow(void *array, size_t count, size_t size)
     memcpy(&old, array, sizeof old);
     if (count && (count < 16 || (count & (count - 1))))
         return true;
-    const size_t room = count < 16 ? 16 : 2 * count;
-    grown = room > SIZE_MAX / size ? NULL : realloc(old, room * size);
+    const size_t capacity = count < 16 ? 16 : 2 * count;
+    grown = capacity > SIZE_MAX / size ? NULL : realloc(old, capacity * size);
     if (grown)
         memcpy(array, &grown, sizeof grown);
     return grown != NULL;

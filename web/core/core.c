@@ -33,7 +33,7 @@ struct core {
 };
 
 // Memory for the page to write into.
-EXPORT void *core_room(int bytes)
+EXPORT void *core_allocate(int bytes)
 {
     return malloc((size_t)bytes);
 }

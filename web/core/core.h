@@ -4,7 +4,7 @@
 
 struct core;
 
-void *core_room(int bytes);
+void *core_allocate(int bytes);
 void core_free(void *memory);
 struct core *core_open(const char *basis, const char *interpolant, const double *parameter,
                        int coefficients, int hemispherical, int pole_y, const double *xyz, int n);

@@ -12,7 +12,7 @@
 #include "format/coder/coding.h"
 #include "format/pack/views.h"
 #include "site/publish/functions.h"
-#include "site/publish/scene.h"
+#include "site/publish/published.h"
 
 #include <relume/context.h>
 
@@ -24,7 +24,7 @@
 
 #define EXPORT __attribute__((visibility("default"), used))
 
-// Planes of a page (scene.js); views whose codes are held, and what they may take.
+// Planes of a page (published.js); views whose codes are held, and what they may take.
 enum { MOST_PLANES = 192, MOST_HELD = 16, HELD_BYTES = 256 << 20 };
 // What one view may take of the two gigabytes that there are.
 #define MOST_BYTES (UINT64_C(1) << 30)
@@ -32,7 +32,7 @@ enum { MOST_PLANES = 192, MOST_HELD = 16, HELD_BYTES = 256 << 20 };
 struct opened {
     struct relume_log log;
     struct relume_limits limits;
-    struct scene scene;
+    struct published file;
     char *json;
     bool bytes;                 // codes of 8 bits, as they are; else halves
     int held[MOST_HELD], next;  // views whose codes are in memory, -1: none; whose place is next
@@ -41,7 +41,7 @@ struct opened {
     char why[2048];
 };
 
-EXPORT void *open_room(int bytes)
+EXPORT void *open_allocate(int bytes)
 {
     return mem_array((size_t)bytes, 1);
 }
@@ -71,7 +71,7 @@ EXPORT const char *open_why(const struct opened *o)
 static bool fine(struct opened *o, relume_status status)
 {
     if (status && !*o->why)
-        snprintf(o->why, sizeof o->why, "%s: %s", o->scene.name,
+        snprintf(o->why, sizeof o->why, "%s: %s", o->file.name,
                  status == RELUME_ENOMEM ? "there is not enough memory for it"
                                          : relume_status_text(status));
     return !status;
@@ -81,25 +81,25 @@ static bool fine(struct opened *o, relume_status status)
 
 static uint64_t bytes_of_view(const struct opened *o)
 {
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
+    const struct relume_pack_info *info = relume_pack_info(o->file.pack);
     return (uint64_t)info->width * (uint64_t)info->height *
            (info->books ? 2 * (uint64_t)info->books
-                        : (uint64_t)o->scene.levels.planes * relume_storage_bytes(info->storage));
+                        : (uint64_t)o->file.levels.planes * relume_storage_bytes(info->storage));
 }
 
-// Views that were asked for last stay, as many as there is room for.
+// Views that were asked for last stay, as many as there is memory for.
 static relume_status open_codes(const struct relume_codes **out, struct opened *o, int view)
 {
     const uint64_t bytes = bytes_of_view(o);
     const int most = (int)(bytes * MOST_HELD > HELD_BYTES ? HELD_BYTES / (bytes + 1) : MOST_HELD);
     for (int i = 0; i < MOST_HELD; i++)
         if (o->held[i] == view)
-            return relume_pack_codes(out, o->scene.pack, view);
+            return relume_pack_codes(out, o->file.pack, view);
     if (o->held[o->next] >= 0)
-        relume_pack_drop(o->scene.pack, o->held[o->next]);
+        relume_pack_drop(o->file.pack, o->held[o->next]);
     o->held[o->next] = view;
     o->next = (o->next + 1) % larger_of(most, 1);
-    return relume_pack_codes(out, o->scene.pack, view);
+    return relume_pack_codes(out, o->file.pack, view);
 }
 
 // ---------------------------------------------------------------- what it is
@@ -107,7 +107,7 @@ static relume_status open_codes(const struct relume_codes **out, struct opened *
 __attribute__((format(printf, 2, 3))) static bool refuse(struct opened *o, const char *format, ...)
 {
     va_list list;
-    const int n = snprintf(o->why, sizeof o->why, "%s: ", o->scene.name);
+    const int n = snprintf(o->why, sizeof o->why, "%s: ", o->file.name);
     va_start(list, format);
     if (n < (int)sizeof o->why)
         vsnprintf(o->why + n, sizeof o->why - (size_t)n, format, list);
@@ -117,7 +117,7 @@ __attribute__((format(printf, 2, 3))) static bool refuse(struct opened *o, const
 
 static bool can_be_shown(struct opened *o)
 {
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
+    const struct relume_pack_info *info = relume_pack_info(o->file.pack);
     const uint64_t bytes = bytes_of_view(o);
     if (info->slabs)
         return refuse(o, "slabs around an object are not shown in pages; expected a planar file, "
@@ -125,10 +125,10 @@ static bool can_be_shown(struct opened *o)
     if (info->domain == RELUME_DOMAIN_DISPLAY && info->display.curve == RELUME_CURVE_LOG)
         return refuse(o, "its coefficients are logarithms, which pages do not know; relume "
                          "publish makes a page of it");
-    if (o->scene.levels.planes > MOST_PLANES)
+    if (o->file.levels.planes > MOST_PLANES)
         return refuse(
             o, "%d planes are too many, expected at most %d; relume publish makes a page of it",
-            o->scene.levels.planes, MOST_PLANES);
+            o->file.levels.planes, MOST_PLANES);
     if (!info->levels && bytes > MOST_BYTES)
         return refuse(o,
                       "a view of %d x %d pixels takes %.1f GB here, expected at most %.1f; relume "
@@ -166,8 +166,8 @@ static relume_status make_functions(struct common *c, const struct relume_coder_
 // hold the numbers of all.
 static relume_status make_steps(struct opened *o)
 {
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
-    struct levels *l = &o->scene.levels;
+    const struct relume_pack_info *info = relume_pack_info(o->file.pack);
+    struct levels *l = &o->file.levels;
     const struct relume_codes *codes = NULL;
     l->scale = mem_array((size_t)l->planes, sizeof *l->scale);
     l->offset = mem_zeroed((size_t)l->planes, sizeof *l->offset);
@@ -186,27 +186,27 @@ static relume_status make_steps(struct opened *o)
 
 static relume_status describe(struct opened *o)
 {
-    struct scene *s = &o->scene;
-    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    struct published *f = &o->file;
+    const struct relume_pack_info *info = relume_pack_info(f->pack);
     const struct relume_coder_info *coder = relume_coder_info(info->coder);
-    relume_status status = functions_coder(&s->common.raw, coder, &o->log);
-    s->layers = mem_zeroed((size_t)info->views, sizeof *s->layers);
-    s->moving = mem_zeroed((size_t)info->views, sizeof *s->moving);
-    if (!status && !(s->layers && s->moving))
+    relume_status status = functions_coder(&f->common.raw, coder, &o->log);
+    f->layers = mem_zeroed((size_t)info->views, sizeof *f->layers);
+    f->moving = mem_zeroed((size_t)info->views, sizeof *f->moving);
+    if (!status && !(f->layers && f->moving))
         status = RELUME_ENOMEM;
     for (int i = 0; !status && i < info->views; i++)
-        s->layers[i] = (struct layers){.depth = info->has_depth, .mask = info->has_mask};
-    s->common.source.coding = source_coding(info->domain, info->display);
-    s->levels.count = levels_count(info->width, info->height, info->views);
-    s->first_level = s->levels.count - 1;
+        f->layers[i] = (struct layers){.depth = info->has_depth, .mask = info->has_mask};
+    f->common.source.coding = source_coding(info->domain, info->display);
+    f->levels.count = levels_count(info->width, info->height, info->views);
+    f->first_level = f->levels.count - 1;
     if (!status)
-        status = make_functions(&s->common, coder, s->levels.planes);
+        status = make_functions(&f->common, coder, f->levels.planes);
     if (!status)
         status = make_steps(o);
     if (status)
         return status;
     struct jwriter w = {.style = JSON_MARKUP};
-    scene_put_json(&w, s);
+    published_put_json(&w, f);
     jend(&w);
     o->json = jtake(&w, NULL);
     return o->json ? RELUME_OK : RELUME_ENOMEM;
@@ -219,17 +219,17 @@ EXPORT struct opened *open_file(char *name, double size)
         return NULL;
     o->log = (struct relume_log){.message = keep_sentence, .user = o};
     o->limits = (struct relume_limits){.max_memory = MOST_BYTES};
-    o->scene.name = o->scene.details.title = relume_printable(name);
+    o->file.name = o->file.details.title = relume_printable(name);
     for (int i = 0; i < MOST_HELD; i++)
         o->held[i] = -1;
     const struct relume_reader reader = {.read = read_page, .size = (uint64_t)size};
     relume_status status = relume_pack_open(
-        &o->scene.pack, name,
+        &o->file.pack, name,
         relume_pack_params(.log = &o->log, .limits = &o->limits, .threads = 1, .reader = &reader));
     if (fine(o, status)) {
         const struct relume_coder_info *coder =
-            relume_coder_info(relume_pack_info(o->scene.pack)->coder);
-        o->scene.levels.planes =
+            relume_coder_info(relume_pack_info(o->file.pack)->coder);
+        o->file.levels.planes =
             coder->basis->joint ? coder->coefficients : 3 * coder->coefficients;
         if (can_be_shown(o))
             (void)fine(o, describe(o));
@@ -237,7 +237,7 @@ EXPORT struct opened *open_file(char *name, double size)
     return o;
 }
 
-EXPORT const char *open_scene(const struct opened *o)
+EXPORT const char *open_json(const struct opened *o)
 {
     return o->json;
 }
@@ -249,14 +249,14 @@ EXPORT int open_is_bytes(const struct opened *o)
 
 EXPORT void open_close(struct opened *o)
 {
-    relume_pack_destroy(&o->scene.pack);
-    relume_coder_destroy(&o->scene.common.raw);
-    mem_free(o->scene.common.transform);
-    mem_free(o->scene.common.mean);
-    mem_free(o->scene.levels.scale);
-    mem_free(o->scene.levels.offset);
-    mem_free(o->scene.layers);
-    mem_free(o->scene.moving);
+    relume_pack_destroy(&o->file.pack);
+    relume_coder_destroy(&o->file.common.raw);
+    mem_free(o->file.common.transform);
+    mem_free(o->file.common.mean);
+    mem_free(o->file.levels.scale);
+    mem_free(o->file.levels.offset);
+    mem_free(o->file.layers);
+    mem_free(o->file.moving);
     mem_free(o->json);
     mem_free(o->out);
     mem_free(o);
@@ -283,7 +283,7 @@ static int side_at(int side, int level)
 static relume_status find_origin(struct origin *from, struct opened *o, int view, int level,
                                  const struct relume_rect *tile)
 {
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
+    const struct relume_pack_info *info = relume_pack_info(o->file.pack);
     const int own = smaller_of(level, info->levels), step = 1 << (level - own);
     const int width = side_at(info->width, own), height = side_at(info->height, own);
     const struct relume_rect r = {tile->left * step, tile->top * step,
@@ -292,7 +292,7 @@ static relume_status find_origin(struct origin *from, struct opened *o, int view
     *from = (struct origin){.width = r.width, .height = r.height, .step = step};
     if (info->levels) {
         const relume_status status =
-            relume_pack_codes_level(&from->part, o->scene.pack, view, own, &r);
+            relume_pack_codes_level(&from->part, o->file.pack, view, own, &r);
         from->codes = &from->part.codes;
         return status;
     }
@@ -331,7 +331,7 @@ static void mean_row(const struct origin *from, int n, int y, int width, float *
 
 static void put_row(const struct opened *o, int n, const float *row, int width, void *to)
 {
-    const float scale = o->scene.levels.scale[n], offset = o->scene.levels.offset[n];
+    const float scale = o->file.levels.scale[n], offset = o->file.levels.offset[n];
     for (int x = 0; x < width; x++)
         if (o->bytes)
             ((uint8_t *)to)[4 * x] =
@@ -343,7 +343,7 @@ static void put_row(const struct opened *o, int n, const float *row, int width, 
 // A tile as the textures of a page are: layers of red, green and blue, and nothing as alpha.
 static void *make_tile(const struct opened *o, const struct origin *from, int width, int height)
 {
-    const int planes = o->scene.levels.planes;
+    const int planes = o->file.levels.planes;
     const size_t pixels = (size_t)width * (size_t)height, code = o->bytes ? 1 : 2;
     char *out = mem_zeroed((size_t)(planes + 2) / 3 * pixels, 4 * code);
     float *row = mem_array(2 * (size_t)from->width, sizeof *row);
@@ -364,7 +364,7 @@ static void *make_tile(const struct opened *o, const struct origin *from, int wi
 
 EXPORT const void *open_tile(struct opened *o, int view, int level, int x, int y)
 {
-    const struct relume_pack_info *info = relume_pack_info(o->scene.pack);
+    const struct relume_pack_info *info = relume_pack_info(o->file.pack);
     const int width = side_at(info->width, level), height = side_at(info->height, level);
     const struct relume_rect tile = {x * LEVELS_TILE, y * LEVELS_TILE,
                                      smaller_of(LEVELS_TILE, width - x * LEVELS_TILE),
@@ -390,8 +390,8 @@ EXPORT const void *open_picture(struct opened *o, int view, int mask)
 {
     struct relume_image image = {0};
     struct layers l = {0};
-    relume_status status = mask ? relume_pack_mask(&image, o->scene.pack, view)
-                                : relume_pack_depth(&image, o->scene.pack, view);
+    relume_status status = mask ? relume_pack_mask(&image, o->file.pack, view)
+                                : relume_pack_depth(&image, o->file.pack, view);
     const size_t pixels = (size_t)image.width * (size_t)image.height;
     mem_free(o->out);
     uint8_t *out = o->out = status || !pixels ? NULL : mem_zeroed(pixels, 4);
@@ -416,9 +416,9 @@ EXPORT const void *open_picture(struct opened *o, int view, int mask)
 EXPORT const float *open_model(struct opened *o, int view)
 {
     struct relume_image model;
-    relume_status status = relume_pack_info(o->scene.pack)->has_gloss
-                               ? relume_pack_gloss(&model, o->scene.pack, view)
-                               : relume_pack_shadow(&model, o->scene.pack, view);
+    relume_status status = relume_pack_info(o->file.pack)->has_gloss
+                               ? relume_pack_gloss(&model, o->file.pack, view)
+                               : relume_pack_shadow(&model, o->file.pack, view);
     const size_t n = (size_t)model.width * (size_t)model.height * MOVING_NUMBERS;
     mem_free(o->out);
     o->out = status || !model.data ? NULL : mem_copy(model.data, n, sizeof *model.data);

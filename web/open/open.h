@@ -8,14 +8,14 @@ struct opened;
 int page_read(void *bytes, double offset, int size);
 
 // Memory for the page to write into, which stays.
-void *open_room(int bytes);
+void *open_allocate(int bytes);
 // The file of that name, which must stay, and size. NULL without memory; else open_why says why it
 // cannot be shown, or nothing.
 struct opened *open_file(char *name, double size);
 // What went wrong last, a sentence without its full stop; nothing: "".
 const char *open_why(const struct opened *o);
-// Its scene.json, which web/scene.js reads.
-const char *open_scene(const struct opened *o);
+// Its scene.json, which web/published.js reads.
+const char *open_json(const struct opened *o);
 // Whether tiles hold bytes; else they hold halves.
 int open_is_bytes(const struct opened *o);
 // [layers][height][width][4] of a tile of a level, and [height][width][4] of a mask or a depth

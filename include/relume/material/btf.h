@@ -86,7 +86,7 @@ RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct rel
 // in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
 // tl030_pl120_tv045_pv020.png, there or one level below. Or a .btf file of the University of Bonn,
 // whose values are multiplied out into temporary data. Returns an input status, RELUME_ENOMEM,
-// RELUME_ECANCEL, RELUME_ESYSTEM without room for temporary data, RELUME_EINVAL for a part that is
+// RELUME_ECANCEL, RELUME_ESYSTEM without space for temporary data, RELUME_EINVAL for a part that is
 // not there.
 RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,
                                             const struct relume_btf_params *params);

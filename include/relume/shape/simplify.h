@@ -66,7 +66,7 @@ struct relume_simplified {
 // seams of texture, normals or colour, and edges between parts, along which vertices go. Triangles
 // of less than three places go. RELUME_EINVAL for params out of range or vertices that are not
 // there, RELUME_ELIMIT with a sentence when not even one part fits into the memory, RELUME_EIO with
-// one where there is no room for the file, RELUME_EUNFIT where nothing is left, RELUME_ENOMEM,
+// one where there is no space for the file, RELUME_EUNFIT where nothing is left, RELUME_ENOMEM,
 // RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_mesh_simplify(struct relume_mesh *out,
                                                  struct relume_simplified *report,

@@ -157,17 +157,17 @@ static double azimuth(vec3 d)
 }
 
 // "lower left, 16 degrees above the table (230 degrees counter-clockwise from the right)"
-static size_t put_place(char *out, size_t room, const char *before, vec3 d)
+static size_t put_place(char *out, size_t capacity, const char *before, vec3 d)
 {
     static const char *const sides[] = {"right", "upper right", "top",    "upper left",
                                         "left",  "lower left",  "bottom", "lower right"};
     const double a = azimuth(d);
     const int n =
-        snprintf(out, room,
+        snprintf(out, capacity,
                  "%s%s, %.0f degrees above the table (%.0f degrees counter-clockwise from "
                  "the right)",
                  before, sides[(int)floor(a / 45.0 + 0.5) % 8], asin(d.z) * 180.0 / M_PI, a);
-    return n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
+    return n < 0 ? 0 : (size_t)n < capacity ? (size_t)n : capacity - 1;
 }
 
 static relume_status check_coverage(struct acquisition *s)

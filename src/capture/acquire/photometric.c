@@ -192,9 +192,9 @@ static void fit_pixel(struct fit *f, const struct pixel *p, int worker)
 static void fit_row(void *context, size_t item, int worker)
 {
     struct fit *f = context;
-    const size_t width = (size_t)f->width, room = (size_t)worker * (size_t)f->lights;
+    const size_t width = (size_t)f->width, first = (size_t)worker * (size_t)f->lights;
     struct pixel p = {
-        .sample = f->scratch + room, .direction = f->towards + room, .gain = f->bright + room};
+        .sample = f->scratch + first, .direction = f->towards + first, .gain = f->bright + first};
     for (int i = 0; i < f->lights; i++)
         p.direction[i] = f->distant[i];
     for (size_t x = 0; x < width; x++) {

@@ -1,5 +1,5 @@
 // image_cache.c - decoded images that stay for tables to come, within a budget: in memory, then on
-// disk, where the system holds them as long as it has room
+// disk, where the system holds them as long as it has memory
 #include "capture/manifest/image_cache.h"
 
 #include "core/base/memory.h"

@@ -28,7 +28,7 @@ void image_cache_destroy(struct image_cache **cache);
 
 // The rows of an image that has been kept, or none; they stay until image_cache_destroy.
 struct kept_image image_cache_find(struct image_cache *cache, int image);
-// Room for an image that is about to be read, or none: no budget, no memory.
+// Memory for an image that is about to be read, or none: no budget, no memory.
 struct kept_image image_cache_reserve(struct image_cache *cache, size_t bytes);
 // Ends image_cache_reserve: whole images can be found from now on, others and second copies are
 // freed.

@@ -9,7 +9,7 @@ size_t repair_count(const float *pixels, size_t n);
 
 // Replaces them in a band of images out[light][n][3]: by the same place under the three nearest
 // lights where it is whole, weighted by 1 / angle; by black where there is none. broken[lights]
-// says which images to look at; `whole` has room for a word about each.
+// says which images to look at; `whole` holds a word about each.
 void repair_band(float *out, const size_t *broken, const vec3 *directions, int lights, size_t n,
                  bool *whole);
 

@@ -39,7 +39,7 @@ static size_t file_bytes(const struct image_stream *stream)
     return (size_t)info->width * (size_t)info->height * (size_t)info->channels;
 }
 
-// Rows come from memory where an earlier table has left them, else stay there if there is room.
+// Rows come from memory where an earlier table has left them, else stay there if there is memory.
 static void use_kept(relume_table *t, struct image_stream *stream, int light)
 {
     struct image_cache *cache = t->capture->cache;

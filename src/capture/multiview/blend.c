@@ -32,17 +32,17 @@ static void columns_of(struct blend_box *box, const uint8_t *used, int width)
     box->x = behind % width;
 }
 
-// Room for smoothing: of the picture where its mask counts, and that is as far again. Over a pole
+// Margin for smoothing: of the picture where its mask counts, and that is as far again. Over a pole
 // rows go on at the other side, so there all columns are needed.
-static void make_room(struct blend_box *box, const struct blend *b)
+static void add_margin(struct blend_box *box, const struct blend *b)
 {
     // Twice how far smoothing over all levels looks.
-    const int room = 4 * ((1 << (b->bands - 1)) - 1);
-    const int top = box->y - room, bottom = box->y + box->height + room;
+    const int margin = 4 * ((1 << (b->bands - 1)) - 1);
+    const int top = box->y - margin, bottom = box->y + box->height + margin;
     box->y = top > 0 ? top : 0;
     box->height = (bottom < b->height ? bottom : b->height) - box->y;
-    box->x = ((box->x - room) % b->width + b->width) % b->width;
-    box->width += 2 * room;
+    box->x = ((box->x - margin) % b->width + b->width) % b->width;
+    box->width += 2 * margin;
     if (top < 0 || bottom > b->height || box->width >= b->width) {
         box->x = 0;
         box->width = b->width;
@@ -65,7 +65,7 @@ static void find_box(struct blend_box *box, uint8_t *used, const struct blend *b
     *box = (struct blend_box){.y = top, .height = bottom - top};
     columns_of(box, used, b->width);
     if (box->width)
-        make_room(box, b);
+        add_margin(box, b);
 }
 
 relume_status blend_begin(struct blend *b)
@@ -88,7 +88,7 @@ struct adding {
     const void *context;
     float *sums;
     float *fine, *coarse;  // [4 * width * height] of the box: colour and mask
-    float *lines;          // for each worker one line with room for the kernel at both ends
+    float *lines;          // for each worker one line with a margin for the kernel at both ends
     size_t line;           // floats
     int step;              // of the kernel
 };
@@ -147,11 +147,11 @@ static void smooth_down(float *line, const struct adding *a, int y)
     }
 }
 
-// Continue a line by `room` pixels at both ends: around the sphere, else by its last pixels.
-static void continue_line(float *line, const struct adding *a, int room)
+// Continue a line by `margin` pixels at both ends: around the sphere, else by its last pixels.
+static void continue_line(float *line, const struct adding *a, int margin)
 {
     const int width = a->box.width;
-    for (int i = 1; i <= room; i++) {
+    for (int i = 1; i <= margin; i++) {
         const int left = whole_ring(a) ? (width - i % width) % width : 0;
         const int right = whole_ring(a) ? (i - 1) % width : width - 1;
         memcpy(line - 4 * i, line + 4 * left, 4 * sizeof *line);
@@ -173,12 +173,12 @@ static void add_band(const struct adding *a, int y, const float *fine, const flo
 static void split_row(void *context, size_t item, int worker)
 {
     const struct adding *a = context;
-    const int room = 2 * a->step;
+    const int margin = 2 * a->step;
     const size_t n = 4 * (size_t)a->box.width;
-    float *line = a->lines + (size_t)worker * a->line + 4 * (size_t)room;
+    float *line = a->lines + (size_t)worker * a->line + 4 * (size_t)margin;
     float *row = a->coarse + row_of(a, (int)item);
     smooth_down(line, a, (int)item);
-    continue_line(line, a, room);
+    continue_line(line, a, margin);
     memset(row, 0, n * sizeof *row);
     for (int k = 0; k < 5; k++)
         add_scaled(row, line + (k - 2) * 4 * a->step, kernel[k], n);

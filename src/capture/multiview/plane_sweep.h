@@ -36,7 +36,7 @@ struct plane_sweep_target plane_sweep_target(const struct plane_sweep *sweep, in
 // How far the farthest of them stands, texels per unit of disparity.
 double plane_sweep_reach(const struct plane_sweep *sweep, const struct plane_sweep_target *target);
 
-// Room for the sums of one row.
+// Memory for the sums of one row.
 struct plane_sweep_scratch {
     uint16_t *one, *sum, *count;  // [width], [PLANE_SWEEP_SIDES + 1][width] twice
 };

@@ -293,7 +293,7 @@ static relume_status load_photo(struct relume_image *out, const struct posed *s,
     return status;
 }
 
-// `total` has room for one number a pixel.
+// `total` holds one number a pixel.
 static relume_status render_view(const struct posed *s, struct relume_image *out, float *total,
                                  const double uv[2])
 {

@@ -256,8 +256,8 @@ relume_status relume_slab_depth(struct relume_slab_depth_report *report,
     status = d.picture && d.plane && d.at && d.bins ? make_folder(&d, dir) : RELUME_ENOMEM;
     if (!status && report)
         report_on(report, &d);
-    if (d.room)
-        scratch_unmap(d.room, d.room_bytes);
+    if (d.memory)
+        scratch_unmap(d.memory, d.memory_bytes);
     mem_free(d.picture);
     mem_free(d.plane);
     mem_free(d.at);

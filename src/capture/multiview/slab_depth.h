@@ -20,8 +20,8 @@ struct slab_depth {
     int planes;
     double first, step;  // disparities of planes
     float **plane;       // [views], [height][width]: what was found, in planes
-    void *room;          // pictures and planes
-    size_t room_bytes;
+    void *memory;        // pictures and planes
+    size_t memory_bytes;
     // of the comparison with known depth, bins of relative error
     size_t *bins, compared, bad;
     double trusted;

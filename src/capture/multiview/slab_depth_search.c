@@ -37,17 +37,17 @@ static void choose_size(struct slab_depth *d)
     d->sweep.height = relume_capture_height(d->capture) / d->factor;
 }
 
-static relume_status make_room(struct slab_depth *d, const char *near)
+static relume_status map_memory(struct slab_depth *d, const char *near)
 {
     const size_t each = view_bytes(d, d->factor), views = (size_t)d->m->views;
     const size_t planes = (size_t)d->sweep.width * (size_t)d->sweep.height * sizeof(float);
-    d->room_bytes = each * views;
-    d->room = scratch_map(near, d->room_bytes);
-    if (!d->room)
+    d->memory_bytes = each * views;
+    d->memory = scratch_map(near, d->memory_bytes);
+    if (!d->memory)
         return log_fail(d->p.log, RELUME_EIO, "%s: no room for %zu bytes beside it; %s", near,
-                        d->room_bytes, strerror(errno));
+                        d->memory_bytes, strerror(errno));
     for (size_t i = 0; i < views; i++) {
-        uint8_t *start = (uint8_t *)d->room + i * each;
+        uint8_t *start = (uint8_t *)d->memory + i * each;
         d->plane[i] = (float *)(void *)start;
         d->picture[i] = start + (planes + 63) / 64 * 64;
     }
@@ -92,7 +92,7 @@ relume_status slab_depth_load(struct slab_depth *d, const char *near)
     d->sweep.picture = d->picture;
     d->sweep.at = (const double(*)[2])d->at;
     place_cameras(d);
-    relume_status status = make_room(d, near);
+    relume_status status = map_memory(d, near);
     for (int i = 0; i < d->m->views && !status; i++)
         status = load_view(d, i);
     return status;

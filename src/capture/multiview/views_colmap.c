@@ -37,7 +37,7 @@ struct text {
     char *path;
     int line;
     char *buffer;
-    size_t room;
+    size_t capacity;
     const struct relume_log *log;
 };
 
@@ -65,7 +65,7 @@ static bool text_next(struct text *t)
 {
     ssize_t n;
     do {
-        n = getline(&t->buffer, &t->room, t->file);
+        n = getline(&t->buffer, &t->capacity, t->file);
         t->line++;
     } while (n > 0 && t->buffer[0] == '#');
     if (n <= 0)
@@ -127,8 +127,8 @@ static relume_status read_lenses(struct lens **out, int *count, const char *fold
     while (!status && text_next(&t)) {
         if (is_blank(t.buffer))
             continue;
-        const bool room = *count < MOST_CAMERAS && mem_grow(out, (size_t)*count, sizeof **out);
-        status = room ? read_lens(&(*out)[(*count)++], &t) : RELUME_ENOMEM;
+        const bool allocated = *count < MOST_CAMERAS && mem_grow(out, (size_t)*count, sizeof **out);
+        status = allocated ? read_lens(&(*out)[(*count)++], &t) : RELUME_ENOMEM;
     }
     text_close(&t);
     return status;
@@ -191,8 +191,10 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
     while (!status && text_next(&t)) {
         if (is_blank(t.buffer))
             continue;
-        const bool room = m->count < MOST_CAMERAS && mem_grow(&all, (size_t)m->count, sizeof *all);
-        status = room ? read_pose(&all[m->count++], &m->arena, &t, lens, lenses) : RELUME_ENOMEM;
+        const bool allocated =
+            m->count < MOST_CAMERAS && mem_grow(&all, (size_t)m->count, sizeof *all);
+        status =
+            allocated ? read_pose(&all[m->count++], &m->arena, &t, lens, lenses) : RELUME_ENOMEM;
         if (!status)
             text_next(&t);
     }

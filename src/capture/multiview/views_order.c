@@ -229,19 +229,19 @@ relume_status grid_order(struct grid_order *out, const struct photo_set *set,
     struct orders o = {.planes = 0};
     struct findings f[2] = {{NULL, NULL, 0.0}, {NULL, NULL, 0.0}};
     relume_status status = load_around(&o, set, grid, 3, 3, p);
-    float *room = NULL;
+    float *scratch = NULL;
     const size_t n = (size_t)o.sweep.width * (size_t)o.sweep.height;
-    if (!status && !(room = mem_array(4 * n, sizeof *room)))
+    if (!status && !(scratch = mem_array(4 * n, sizeof *scratch)))
         status = RELUME_ENOMEM;
     if (!status) {
         scale(&o);
         for (int i = 0; i < 2; i++) {
-            f[i].plane = room + (size_t)(2 * i) * n;
-            f[i].hidden = room + (size_t)(2 * i + 1) * n;
+            f[i].plane = scratch + (size_t)(2 * i) * n;
+            f[i].hidden = scratch + (size_t)(2 * i + 1) * n;
         }
         status = decide(out, &o, f, grid->rows > 1 && grid->columns > 1);
     }
-    mem_free(room);
+    mem_free(scratch);
     for (int i = 0; i < o.sweep.views; i++)
         mem_free(o.picture[i]);
     return status;

@@ -4,12 +4,12 @@
 
 #include "capture/stereo/pixel.h"
 
-// Fill room->base and `middle`: relative errors count, of dark samples little, of unknown ones
+// Fill scratch->base and `middle`: relative errors count, of dark samples little, of unknown ones
 // nothing. False where all is black.
-bool evidence_begin(struct stereo_pixel *pixel, struct stereo_room *room);
-// room->weight from what room->expected misses.
-void evidence_weigh(const struct stereo_pixel *pixel, struct stereo_room *room);
+bool evidence_begin(struct stereo_pixel *pixel, struct stereo_scratch *scratch);
+// scratch->weight from what scratch->expected misses.
+void evidence_weigh(const struct stereo_pixel *pixel, struct stereo_scratch *scratch);
 // What is missed, 0 to 1: no sample adds more than one that is wholly missed.
-float evidence_miss(const struct stereo_pixel *pixel, const struct stereo_room *room);
+float evidence_miss(const struct stereo_pixel *pixel, const struct stereo_scratch *scratch);
 
 #endif

@@ -8,7 +8,7 @@ static size_t slot_floats(const struct stereo_field *f)
     return 2 * (size_t)f->stride + reflect_floats(f->lights);
 }
 
-// Each learner's room, which it keeps when it is forgotten.
+// Floats of each learner, which it keeps when it is forgotten.
 static void prepare_learners(struct stereo_field *f)
 {
     for (int i = 0; i < STEREO_LEARNERS; i++) {
@@ -34,14 +34,14 @@ relume_status stereo_field_create(struct stereo_field *out, int lights, int thre
                                .threads = threads,
                                .is_shared = direction != NULL,
                                .every = every};
-    f->rooms = mem_zeroed(workers, sizeof *f->rooms);
+    f->scratch = mem_zeroed(workers, sizeof *f->scratch);
     f->around = mem_zeroed(workers, sizeof *f->around);
     f->around_floats = mem_array(workers * floats, sizeof *f->around_floats);
     f->value = mem_array(workers * stride, sizeof *f->value);
     f->learner = mem_array(STEREO_LEARNERS, sizeof *f->learner);
     f->learner_lights = mem_array(STEREO_LEARNERS, sizeof *f->learner_lights);
     f->learner_floats = mem_array(STEREO_LEARNERS * slot_floats(f), sizeof *f->learner_floats);
-    if (!f->rooms || !f->around || !f->around_floats || !f->value || !f->learner ||
+    if (!f->scratch || !f->around || !f->around_floats || !f->value || !f->learner ||
         !f->learner_lights || !f->learner_floats)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
@@ -50,7 +50,7 @@ relume_status stereo_field_create(struct stereo_field *out, int lights, int thre
             lights, (int)stride, .at = f->around_floats + (direction ? 0 : i * floats)};
         if (direction)
             reflect_lights_set(f->around + i, direction, eye);
-        status = stereo_room_create(f->rooms + i, lights);
+        status = stereo_scratch_create(f->scratch + i, lights);
     }
     prepare_learners(f);
     return status;
@@ -58,9 +58,9 @@ relume_status stereo_field_create(struct stereo_field *out, int lights, int thre
 
 void stereo_field_destroy(struct stereo_field *f)
 {
-    for (int i = 0; f->rooms && i < f->threads; i++)
-        stereo_room_destroy(f->rooms + i);
-    mem_free(f->rooms);
+    for (int i = 0; f->scratch && i < f->threads; i++)
+        stereo_scratch_destroy(f->scratch + i);
+    mem_free(f->scratch);
     mem_free(f->around);
     mem_free(f->around_floats);
     mem_free(f->value);
@@ -111,9 +111,9 @@ float *stereo_field_add(struct stereo_field *f, vec3 normal, const vec3 *directi
 
 relume_status stereo_field_learn(struct stereo_field *f)
 {
-    f->is_matte = !stereo_learn(&f->material, f->learner, f->learners, f->rooms, f->threads);
+    f->is_matte = !stereo_learn(&f->material, f->learner, f->learners, f->scratch, f->threads);
     return f->is_shared && !f->is_matte
-               ? stereo_table_create(&f->table, &f->material, f->around, f->rooms)
+               ? stereo_table_create(&f->table, &f->material, f->around, f->scratch)
                : RELUME_OK;
 }
 
@@ -140,7 +140,7 @@ float stereo_field_solve(struct stereo_field *f, int worker, const vec3 *directi
     };
     if (!f->is_shared)
         reflect_lights_set(f->around + worker, direction, eye);
-    if (!stereo_solve(&pixel, &f->material, f->is_shared ? &f->table : NULL, f->rooms + worker))
+    if (!stereo_solve(&pixel, &f->material, f->is_shared ? &f->table : NULL, f->scratch + worker))
         return 0.0f;
     const double share = fmin(of_few + of_each * f->lights, 1.0);
     *normal = vec3_unit(vec3_along(vec3_scale(*normal, 1.0 - share), pixel.normal, share));

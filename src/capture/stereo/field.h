@@ -9,12 +9,12 @@
 
 struct stereo_field {
     int lights, stride, threads;
-    bool is_matte;                  // no more than Lambert's law can be asked of it
-    bool is_shared;                 // all pixels see the same lights from the same side
-    struct stereo_room *rooms;      // [threads]
-    struct reflect_lights *around;  // [threads]; shared: all the same
-    float *around_floats;           // of `around`
-    float *value;                   // [threads][stride]
+    bool is_matte;                   // no more than Lambert's law can be asked of it
+    bool is_shared;                  // all pixels see the same lights from the same side
+    struct stereo_scratch *scratch;  // [threads]
+    struct reflect_lights *around;   // [threads]; shared: all the same
+    float *around_floats;            // of `around`
+    float *value;                    // [threads][stride]
     struct stereo_material material;
     struct stereo_table table;
     struct stereo_pixel *learner;  // [STEREO_LEARNERS]
@@ -31,7 +31,7 @@ relume_status stereo_field_create(struct stereo_field *out, int lights, int thre
 void stereo_field_destroy(struct stereo_field *field);
 
 // Whether the next pixel learns. One that is known is then added by its normal as a matte
-// surface's, its lights where they are not shared; the answer has room for its values, 0 or more,
+// surface's, its lights where they are not shared; the answer holds its values, 0 or more,
 // or below 0 where they are not known. When there are too many every second is forgotten.
 bool stereo_field_next(struct stereo_field *field);
 float *stereo_field_add(struct stereo_field *field, vec3 normal, const vec3 *direction, vec3 eye);

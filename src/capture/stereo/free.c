@@ -14,7 +14,7 @@ static const double apart = 0.07;  // 4 degrees: where a sure normal costs much 
 
 struct job {
     struct stereo_pixel *pixel;
-    struct stereo_room *room;
+    struct stereo_scratch *scratch;
     struct mixture mixture;
     float trial[REFLECT_PARTS];
 };
@@ -23,15 +23,15 @@ static double fit(struct job *j, float part[REFLECT_PARTS])
 {
     const struct stereo_pixel *p = j->pixel;
     j->mixture = (struct mixture){.which = ALL};
-    mixture_add(&j->mixture, j->room->parts, (size_t)j->room->stride, 1.0f, p->value,
-                j->room->weight, j->room->spare);
+    mixture_add(&j->mixture, j->scratch->parts, (size_t)j->scratch->stride, 1.0f, p->value,
+                j->scratch->weight, j->scratch->spare);
     return mixture_solve(&j->mixture, part, SWEEPS);
 }
 
 static double cost_at(void *context, vec3 normal)
 {
     struct job *j = context;
-    reflect_parts(j->room->parts, ALL, j->pixel->lights, normal, j->room->cosines);
+    reflect_parts(j->scratch->parts, ALL, j->pixel->lights, normal, j->scratch->cosines);
     memcpy(j->trial, j->pixel->part, sizeof j->trial);
     return fit(j, j->trial);
 }
@@ -44,11 +44,11 @@ static void accept(void *context)
 
 static void expect(struct job *j)
 {
-    const size_t stride = (size_t)j->room->stride;
-    memset(j->room->expected, 0, stride * sizeof(float));
+    const size_t stride = (size_t)j->scratch->stride;
+    memset(j->scratch->expected, 0, stride * sizeof(float));
     for (size_t k = 0; k < REFLECT_PARTS; k++)
         for (size_t i = 0; i < stride && j->pixel->part[k] > 0.0f; i++)
-            j->room->expected[i] += j->pixel->part[k] * j->room->parts[k * stride + i];
+            j->scratch->expected[i] += j->pixel->part[k] * j->scratch->parts[k * stride + i];
 }
 
 static double settle(void *context, vec3 normal)
@@ -58,7 +58,7 @@ static double settle(void *context, vec3 normal)
     accept(j);
     for (int i = 0; i < REWEIGHED; i++) {
         expect(j);
-        evidence_weigh(j->pixel, j->room);
+        evidence_weigh(j->pixel, j->scratch);
         cost = fit(j, j->pixel->part);
     }
     return cost;
@@ -69,16 +69,16 @@ static float sureness(struct job *j, double least)
     double beside = INFINITY, kept = 0.0, known = 0.0;
     for (int i = 0; i < SEARCH_SIDES; i++)
         beside = fmin(beside, cost_at(j, search_beside(j->pixel->normal, apart, i, 0.0)));
-    for (int i = 0; i < j->room->stride; i++) {
+    for (int i = 0; i < j->scratch->stride; i++) {
         known += j->pixel->value[i] >= 0.0f;
-        kept += j->pixel->value[i] >= 0.0f && j->room->weight[i] > 0.5f * j->room->base[i];
+        kept += j->pixel->value[i] >= 0.0f && j->scratch->weight[i] > 0.5f * j->scratch->base[i];
     }
     return (float)((beside - least) / (least + 1e-4 * j->mixture.energy) * kept / known);
 }
 
 static void begin(struct job *j)
 {
-    memcpy(j->room->weight, j->room->base, (size_t)j->room->stride * sizeof(float));
+    memcpy(j->scratch->weight, j->scratch->base, (size_t)j->scratch->stride * sizeof(float));
     for (int k = 0; k < REFLECT_PARTS; k++)
         j->pixel->part[k] = 0.1f * j->pixel->middle;
 }
@@ -99,10 +99,10 @@ static vec3 find_start(struct job *j)
     return best;
 }
 
-bool free_solve(struct stereo_pixel *p, bool around, struct stereo_room *room)
+bool free_solve(struct stereo_pixel *p, bool around, struct stereo_scratch *scratch)
 {
-    struct job j = {.pixel = p, .room = room};
-    if (!evidence_begin(p, room))
+    struct job j = {.pixel = p, .scratch = scratch};
+    if (!evidence_begin(p, scratch))
         return false;
     const vec3 start = around ? find_start(&j) : p->guess;
     begin(&j);
@@ -110,7 +110,7 @@ bool free_solve(struct stereo_pixel *p, bool around, struct stereo_room *room)
         &(struct search){&j, settle, cost_at, accept, first_step, last_step, p->lights->eye},
         start);
     const double least = settle(&j, p->normal);
-    memcpy(p->weight, room->weight, (size_t)room->stride * sizeof(float));
+    memcpy(p->weight, scratch->weight, (size_t)scratch->stride * sizeof(float));
     p->sure = sureness(&j, least);
     return true;
 }

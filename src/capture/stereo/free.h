@@ -6,6 +6,6 @@
 
 // Normal, parts, `sure` and weights, from pixel->guess or, `around`, from the best of normals all
 // around: metals need that, and shadows mislead it. False where it is too dark.
-bool free_solve(struct stereo_pixel *pixel, bool around, struct stereo_room *room);
+bool free_solve(struct stereo_pixel *pixel, bool around, struct stereo_scratch *scratch);
 
 #endif

@@ -40,7 +40,7 @@ struct lesson {
     int n;
     bool around;
     const struct stereo_material *material;
-    struct stereo_room *rooms;
+    struct stereo_scratch *scratch;
     int threads;
 };
 
@@ -55,7 +55,7 @@ static int by_sureness(const void *a, const void *b)
 static void solve_freely(void *context, size_t item, int worker)
 {
     const struct lesson *l = context;
-    if (!free_solve(l->pixel + item, l->around, l->rooms + worker))
+    if (!free_solve(l->pixel + item, l->around, l->scratch + worker))
         l->pixel[item].sure = -1.0f;
     l->pixel[item].free = l->pixel[item].normal;
 }
@@ -63,39 +63,39 @@ static void solve_freely(void *context, size_t item, int worker)
 static void solve(void *context, size_t item, int worker)
 {
     const struct lesson *l = context;
-    stereo_solve(l->pixel + item, l->material, NULL, l->rooms + worker);
+    stereo_solve(l->pixel + item, l->material, NULL, l->scratch + worker);
 }
 
 static void find_brightness(void *context, size_t item, int worker)
 {
     const struct lesson *l = context;
     struct stereo_pixel *p = l->pixel + item;
-    struct stereo_room *room = l->rooms + worker;
-    const size_t stride = (size_t)room->stride;
-    reflect_parts(room->parts, l->material->which, p->lights, p->normal, room->cosines);
-    memset(room->expected, 0, stride * sizeof(float));
+    struct stereo_scratch *scratch = l->scratch + worker;
+    const size_t stride = (size_t)scratch->stride;
+    reflect_parts(scratch->parts, l->material->which, p->lights, p->normal, scratch->cosines);
+    memset(scratch->expected, 0, stride * sizeof(float));
     for (size_t k = 0; k < REFLECT_PARTS; k++)
         for (size_t i = 0; i < stride && (l->material->which >> k & 1); i++)
-            room->expected[i] += l->material->part[k] * room->parts[k * stride + i];
+            scratch->expected[i] += l->material->part[k] * scratch->parts[k * stride + i];
     for (size_t i = 0; i < stride; i++)
-        room->spare[i] = p->weight[i] * room->expected[i];
-    const float energy = sum_products(room->spare, room->expected, stride);
-    p->matte = energy > 0.0f ? sum_products(room->spare, p->value, stride) / energy : 0.0f;
+        scratch->spare[i] = p->weight[i] * scratch->expected[i];
+    const float energy = sum_products(scratch->spare, scratch->expected, stride);
+    p->matte = energy > 0.0f ? sum_products(scratch->spare, p->value, stride) / energy : 0.0f;
 }
 
 static void find_material(struct stereo_material *out, unsigned which, const struct lesson *l,
                           int pixels)
 {
     struct mixture mixture = {.which = which};
-    const struct stereo_room *room = l->rooms;
+    const struct stereo_scratch *scratch = l->scratch;
     for (int i = 0; i < pixels; i++) {
         const struct stereo_pixel *p = l->pixel + i;
-        reflect_parts(room->parts, which, p->lights, p->normal, room->cosines);
+        reflect_parts(scratch->parts, which, p->lights, p->normal, scratch->cosines);
         const float unit = 1.0f / p->middle;
-        for (int k = 0; k < room->stride; k++)
-            room->expected[k] = unit * unit * p->weight[k];
-        mixture_add(&mixture, room->parts, (size_t)room->stride, p->matte, p->value, room->expected,
-                    room->spare);
+        for (int k = 0; k < scratch->stride; k++)
+            scratch->expected[k] = unit * unit * p->weight[k];
+        mixture_add(&mixture, scratch->parts, (size_t)scratch->stride, p->matte, p->value,
+                    scratch->expected, scratch->spare);
     }
     mixture_solve(&mixture, out->part, SWEEPS);
     float most = 0.0f;
@@ -178,9 +178,9 @@ static void choose(struct stereo_material *out, const struct kind **best, struct
 }
 
 bool stereo_learn(struct stereo_material *out, struct stereo_pixel *pixel, int n,
-                  struct stereo_room *rooms, int threads)
+                  struct stereo_scratch *scratch, int threads)
 {
-    struct lesson l = {.pixel = pixel, .n = n, .rooms = rooms, .threads = threads};
+    struct lesson l = {.pixel = pixel, .n = n, .scratch = scratch, .threads = threads};
     const struct kind *kind = kinds;
     for (int i = 0; i < n; i++)
         pixel[i].guess = pixel[i].normal;

@@ -7,23 +7,24 @@ static const double ridge = 1e-4;    // of a part's own energy: neighbouring lob
 static const double settled = 1e-5;  // of the energy: what a sweep must still gain
 
 void mixture_add(struct mixture *to, const float *parts, size_t stride, float scale,
-                 const float *value, const float *weight, float *room)
+                 const float *value, const float *weight, float *scratch)
 {
     for (size_t k = 0; k < REFLECT_PARTS; k++) {
         if (!(to->which >> k & 1))
             continue;
         for (size_t i = 0; i < stride; i++)
-            room[i] = scale * weight[i] * parts[k * stride + i];
+            scratch[i] = scale * weight[i] * parts[k * stride + i];
         for (size_t j = 0; j <= k; j++)
             if (to->which >> j & 1)
-                to->gram[k][j] += (double)(scale * sum_products(room, parts + j * stride, stride));
+                to->gram[k][j] +=
+                    (double)(scale * sum_products(scratch, parts + j * stride, stride));
         for (size_t j = 0; j < k; j++)
             to->gram[j][k] = to->gram[k][j];
-        to->b[k] += (double)sum_products(room, value, stride);
+        to->b[k] += (double)sum_products(scratch, value, stride);
     }
     for (size_t i = 0; i < stride; i++)
-        room[i] = weight[i] * value[i];
-    to->energy += (double)sum_products(room, value, stride);
+        scratch[i] = weight[i] * value[i];
+    to->energy += (double)sum_products(scratch, value, stride);
 }
 
 static double pull_of(const struct mixture *s, const float *part, int k)

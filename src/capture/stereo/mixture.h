@@ -10,9 +10,10 @@ struct mixture {
     double gram[REFLECT_PARTS][REFLECT_PARTS], b[REFLECT_PARTS], energy;
 };
 
-// Add the samples of one pixel, of which `scale` x parts are expected; `room` has `stride` floats.
+// Add the samples of one pixel, of which `scale` x parts are expected; `scratch` has `stride`
+// floats.
 void mixture_add(struct mixture *to, const float *parts, size_t stride, float scale,
-                 const float *value, const float *weight, float *room);
+                 const float *value, const float *weight, float *scratch);
 // By coordinate descent from what `part` holds; returns what is missed.
 double mixture_solve(const struct mixture *mixture, float part[REFLECT_PARTS], int sweeps);
 

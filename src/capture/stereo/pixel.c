@@ -1,26 +1,26 @@
-// pixel.c - room of one worker
+// pixel.c - scratch memory of one worker
 #include "capture/stereo/pixel.h"
 
 #include "core/base/memory.h"
 
-relume_status stereo_room_create(struct stereo_room *room, int lights)
+relume_status stereo_scratch_create(struct stereo_scratch *scratch, int lights)
 {
     enum { ROWS = REFLECT_PARTS + 9 };
     const size_t stride = (size_t)reflect_stride(lights);
-    *room = (struct stereo_room){.stride = (int)stride,
-                                 .memory = mem_array(ROWS * stride, sizeof(float))};
-    if (!room->memory)
+    *scratch = (struct stereo_scratch){.stride = (int)stride,
+                                       .memory = mem_array(ROWS * stride, sizeof(float))};
+    if (!scratch->memory)
         return RELUME_ENOMEM;
-    room->parts = room->memory;
-    float **const row[] = {&room->matte,  &room->gloss, &room->expected, &room->base,
-                           &room->weight, &room->spare, &room->cosines};
+    scratch->parts = scratch->memory;
+    float **const row[] = {&scratch->matte,  &scratch->gloss, &scratch->expected, &scratch->base,
+                           &scratch->weight, &scratch->spare, &scratch->cosines};
     for (size_t i = 0; i < sizeof row / sizeof *row; i++)
-        *row[i] = room->parts + (REFLECT_PARTS + i) * stride;
+        *row[i] = scratch->parts + (REFLECT_PARTS + i) * stride;
     return RELUME_OK;
 }
 
-void stereo_room_destroy(struct stereo_room *room)
+void stereo_scratch_destroy(struct stereo_scratch *scratch)
 {
-    mem_free(room->memory);
-    *room = (struct stereo_room){0};
+    mem_free(scratch->memory);
+    *scratch = (struct stereo_scratch){0};
 }

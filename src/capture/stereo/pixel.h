@@ -1,4 +1,4 @@
-// pixel.h - what is known and found of one pixel, and room to find it
+// pixel.h - what is known and found of one pixel, and scratch memory to find it
 #ifndef STEREO_PIXEL_H
 #define STEREO_PIXEL_H
 
@@ -19,13 +19,13 @@ struct stereo_pixel {
     float sure;                 // 0 to 1: how narrowly the samples determine the normal
 };
 
-// Room of one worker.
-struct stereo_room {
+// Scratch memory of one worker.
+struct stereo_scratch {
     int stride;
     float *memory;
     float *parts, *matte, *gloss, *expected, *base, *weight, *spare, *cosines;
 };
-relume_status stereo_room_create(struct stereo_room *room, int lights);
-void stereo_room_destroy(struct stereo_room *room);
+relume_status stereo_scratch_create(struct stereo_scratch *scratch, int lights);
+void stereo_scratch_destroy(struct stereo_scratch *scratch);
 
 #endif

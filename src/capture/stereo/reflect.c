@@ -74,13 +74,13 @@ static void find_lobe(float *restrict lobe, size_t stride, const float *restrict
 }
 
 void reflect_parts(float *parts, unsigned which, const struct reflect_lights *lights, vec3 normal,
-                   float *room)
+                   float *scratch)
 {
     const size_t stride = (size_t)lights->stride;
     const float x = (float)normal.x, y = (float)normal.y, z = (float)normal.z;
     const float eye = fmaxf((float)vec3_dot(normal, lights->eye), 0.02f);
     const float *l = lights->at, *h = l + 3 * stride;
-    float *cosine = room, *half = room + stride;
+    float *cosine = scratch, *half = scratch + stride;
     for (size_t i = 0; i < stride; i++) {
         const float c = x * l[i] + y * l[stride + i] + z * l[2 * stride + i];
         cosine[i] = c > 0.0f ? c : 0.0f;

@@ -24,8 +24,8 @@ size_t reflect_floats(int lights);
 void reflect_lights_set(struct reflect_lights *to, const vec3 *direction, vec3 eye);
 
 // parts[REFLECT_PARTS][stride], times the cosine to the light; only those whose bit is set in
-// `which`. `room` has 2 x stride floats.
+// `which`. `scratch` has 2 x stride floats.
 void reflect_parts(float *parts, unsigned which, const struct reflect_lights *lights, vec3 normal,
-                   float *room);
+                   float *scratch);
 
 #endif

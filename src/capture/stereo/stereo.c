@@ -21,21 +21,21 @@ struct job {
     struct stereo_pixel *pixel;
     const struct stereo_material *material;
     const struct stereo_table *table;
-    struct stereo_room *room;
+    struct stereo_scratch *scratch;
     float hold;  // how strongly gloss is held at matte
     float matte, gloss;
 };
 
 static void mix(float *matte, float *gloss, const struct stereo_material *m,
-                const struct reflect_lights *lights, vec3 normal, struct stereo_room *room)
+                const struct reflect_lights *lights, vec3 normal, struct stereo_scratch *scratch)
 {
     const size_t stride = (size_t)lights->stride;
-    reflect_parts(room->parts, m->which, lights, normal, room->cosines);
+    reflect_parts(scratch->parts, m->which, lights, normal, scratch->cosines);
     memset(matte, 0, stride * sizeof *matte);
     memset(gloss, 0, stride * sizeof *gloss);
     for (size_t k = 0; k < REFLECT_PARTS; k++) {
         float *const to = k < REFLECT_MATTE ? matte : gloss;
-        const float *const part = room->parts + k * stride, much = m->part[k];
+        const float *const part = scratch->parts + k * stride, much = m->part[k];
         for (size_t i = 0; i < stride && (m->which >> k & 1); i++)
             to[i] += much * part[i];
     }
@@ -46,9 +46,9 @@ static double fit(struct job *j, const float *matte, const float *gloss)
 {
     const struct stereo_pixel *p = j->pixel;
     float part[5][8] = {{0}}, sum[5];
-    for (int i = 0; i < j->room->stride; i += 8)
+    for (int i = 0; i < j->scratch->stride; i += 8)
         for (int k = 0; k < 8; k++) {
-            const float a = matte[i + k], b = gloss[i + k], w = j->room->weight[i + k];
+            const float a = matte[i + k], b = gloss[i + k], w = j->scratch->weight[i + k];
             const float y = p->value[i + k];
             part[0][k] += w * a * a;
             part[1][k] += w * a * b;
@@ -78,22 +78,22 @@ static double fit(struct job *j, const float *matte, const float *gloss)
 static void hold_gloss(struct job *j, const float *gloss)
 {
     float energy = 0.0f;
-    for (int i = 0; i < j->room->stride; i++)
-        energy += j->room->weight[i] * gloss[i] * gloss[i];
+    for (int i = 0; i < j->scratch->stride; i++)
+        energy += j->scratch->weight[i] * gloss[i] * gloss[i];
     j->hold = held * energy;
 }
 
 static void expect(struct job *j, const float *matte, const float *gloss)
 {
-    for (int i = 0; i < j->room->stride; i++)
-        j->room->expected[i] = j->matte * matte[i] + j->gloss * gloss[i];
+    for (int i = 0; i < j->scratch->stride; i++)
+        j->scratch->expected[i] = j->matte * matte[i] + j->gloss * gloss[i];
 }
 
 static double cost_at(void *context, vec3 normal)
 {
     struct job *j = context;
-    mix(j->room->matte, j->room->gloss, j->material, j->pixel->lights, normal, j->room);
-    return fit(j, j->room->matte, j->room->gloss);
+    mix(j->scratch->matte, j->scratch->gloss, j->material, j->pixel->lights, normal, j->scratch);
+    return fit(j, j->scratch->matte, j->scratch->gloss);
 }
 
 static void accept(void *context)
@@ -106,14 +106,14 @@ static void accept(void *context)
 static double settle(void *context, vec3 normal)
 {
     struct job *j = context;
-    mix(j->room->matte, j->room->gloss, j->material, j->pixel->lights, normal, j->room);
-    hold_gloss(j, j->room->gloss);
+    mix(j->scratch->matte, j->scratch->gloss, j->material, j->pixel->lights, normal, j->scratch);
+    hold_gloss(j, j->scratch->gloss);
     for (int i = 0; i < REWEIGHED; i++) {
-        fit(j, j->room->matte, j->room->gloss);
-        expect(j, j->room->matte, j->room->gloss);
-        evidence_weigh(j->pixel, j->room);
+        fit(j, j->scratch->matte, j->scratch->gloss);
+        expect(j, j->scratch->matte, j->scratch->gloss);
+        evidence_weigh(j->pixel, j->scratch);
     }
-    const double cost = fit(j, j->room->matte, j->room->gloss);
+    const double cost = fit(j, j->scratch->matte, j->scratch->gloss);
     accept(j);
     return cost;
 }
@@ -128,7 +128,8 @@ void stereo_table_destroy(struct stereo_table *table)
 }
 
 relume_status stereo_table_create(struct stereo_table *out, const struct stereo_material *material,
-                                  const struct reflect_lights *lights, struct stereo_room *room)
+                                  const struct reflect_lights *lights,
+                                  struct stereo_scratch *scratch)
 {
     const size_t stride = (size_t)lights->stride;
     *out = (struct stereo_table){mem_array(SEARCH_STARTS * stride, sizeof(float)),
@@ -139,36 +140,36 @@ relume_status stereo_table_create(struct stereo_table *out, const struct stereo_
     }
     for (size_t i = 0; i < SEARCH_STARTS; i++)
         mix(out->matte + i * stride, out->gloss + i * stride, material, lights,
-            search_start((int)i, lights->eye), room);
+            search_start((int)i, lights->eye), scratch);
     return RELUME_OK;
 }
 
 static float miss_of(struct job *j, const float *matte, const float *gloss)
 {
-    memcpy(j->room->weight, j->room->base, (size_t)j->room->stride * sizeof(float));
+    memcpy(j->scratch->weight, j->scratch->base, (size_t)j->scratch->stride * sizeof(float));
     hold_gloss(j, gloss);
     fit(j, matte, gloss);
     expect(j, matte, gloss);
-    return evidence_miss(j->pixel, j->room);
+    return evidence_miss(j->pixel, j->scratch);
 }
 
 // The first guess, or one of the normals all around that misses less.
 static vec3 find_start(struct job *j)
 {
-    struct stereo_room *const room = j->room;
-    const size_t stride = (size_t)room->stride;
+    struct stereo_scratch *const scratch = j->scratch;
+    const size_t stride = (size_t)scratch->stride;
     const struct reflect_lights *const lights = j->pixel->lights;
     vec3 best = j->pixel->normal;
-    mix(room->matte, room->gloss, j->material, lights, best, room);
-    float least = miss_of(j, room->matte, room->gloss);
+    mix(scratch->matte, scratch->gloss, j->material, lights, best, scratch);
+    float least = miss_of(j, scratch->matte, scratch->gloss);
     for (size_t i = 0; i < SEARCH_STARTS; i++) {
         const vec3 n = search_start((int)i, lights->eye);
-        const float *matte = room->matte, *gloss = room->gloss;
+        const float *matte = scratch->matte, *gloss = scratch->gloss;
         if (j->table) {
             matte = j->table->matte + i * stride;
             gloss = j->table->gloss + i * stride;
         } else
-            mix(room->matte, room->gloss, j->material, lights, n, room);
+            mix(scratch->matte, scratch->gloss, j->material, lights, n, scratch);
         const float miss = miss_of(j, matte, gloss);
         if (miss < least) {
             least = miss;
@@ -184,10 +185,10 @@ static float sureness(struct job *j, double least)
     double beside = INFINITY, energy = 0.0, count = 0.0;
     for (int i = 0; i < SEARCH_SIDES; i++)
         beside = fmin(beside, cost_at(j, search_beside(j->pixel->normal, apart, i, 0.0)));
-    for (int i = 0; i < j->room->stride; i++) {
-        const double w = (double)j->room->weight[i], v = (double)j->pixel->value[i];
+    for (int i = 0; i < j->scratch->stride; i++) {
+        const double w = (double)j->scratch->weight[i], v = (double)j->pixel->value[i];
         energy += w * v * v;
-        count += j->room->base[i] > 0.0f ? w / (double)j->room->base[i] : 0.0;
+        count += j->scratch->base[i] > 0.0f ? w / (double)j->scratch->base[i] : 0.0;
     }
     const double variance = fmax(energy + least, 1e-6 * energy) / fmax(count - 4.0, 1.0);
     const double error = apart * sqrt(variance / fmax(beside - least, 1e-12 * energy));
@@ -195,20 +196,20 @@ static float sureness(struct job *j, double least)
 }
 
 bool stereo_solve(struct stereo_pixel *p, const struct stereo_material *material,
-                  const struct stereo_table *table, struct stereo_room *room)
+                  const struct stereo_table *table, struct stereo_scratch *scratch)
 {
-    struct job j = {.pixel = p, .material = material, .table = table, .room = room};
-    if (!evidence_begin(p, room))
+    struct job j = {.pixel = p, .material = material, .table = table, .scratch = scratch};
+    if (!evidence_begin(p, scratch))
         return false;
     const vec3 start = find_start(&j);
-    memcpy(room->weight, room->base, (size_t)room->stride * sizeof(float));
+    memcpy(scratch->weight, scratch->base, (size_t)scratch->stride * sizeof(float));
     p->normal = search_find(
         &(struct search){&j, settle, cost_at, accept, first_step, last_step, p->lights->eye},
         start);
     const double least = settle(&j, p->normal);
-    p->miss = evidence_miss(p, room);
+    p->miss = evidence_miss(p, scratch);
     if (p->weight)
-        memcpy(p->weight, room->weight, (size_t)room->stride * sizeof(float));
+        memcpy(p->weight, scratch->weight, (size_t)scratch->stride * sizeof(float));
     p->sure = sureness(&j, least) * (1.0f - p->miss);
     return true;
 }

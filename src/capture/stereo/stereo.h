@@ -23,10 +23,10 @@ struct stereo_material {
     float part[REFLECT_PARTS];
 };
 
-// From pixels spread over the object, which change; each with room for its weights. False where it
-// is matte, or none of them is bright enough.
+// From pixels spread over the object, which change; each with scratch for its weights. False where
+// it is matte, or none of them is bright enough.
 bool stereo_learn(struct stereo_material *out, struct stereo_pixel *pixel, int n,
-                  struct stereo_room *rooms, int threads);
+                  struct stereo_scratch *scratch, int threads);
 
 // What the material shows under shared lights at normals all around, so that pixels need not find
 // out one by one. Empty where lights are not shared.
@@ -34,11 +34,12 @@ struct stereo_table {
     float *matte, *gloss;  // [normals][stride]
 };
 relume_status stereo_table_create(struct stereo_table *out, const struct stereo_material *material,
-                                  const struct reflect_lights *lights, struct stereo_room *room);
+                                  const struct reflect_lights *lights,
+                                  struct stereo_scratch *scratch);
 void stereo_table_destroy(struct stereo_table *table);
 
 // Find the normal; `table` may be NULL. False where it is too dark.
 bool stereo_solve(struct stereo_pixel *pixel, const struct stereo_material *material,
-                  const struct stereo_table *table, struct stereo_room *room);
+                  const struct stereo_table *table, struct stereo_scratch *scratch);
 
 #endif

@@ -251,7 +251,7 @@ static void hear(void *user, enum relume_level level, const char *text)
         l->to->message(l->to->user, level, text);
 }
 
-static bool pass_progress(void *user, const char *what, double done)
+static bool forward_progress(void *user, const char *what, double done)
 {
     struct listener *l = user;
     (void)what;
@@ -270,9 +270,9 @@ static bool hold_progress(void *user, const char *what, double done)
 static struct listener *listen_to(struct listener *l, const struct relume_log *to,
                                   struct warnings *warnings, double first, double extent)
 {
-    *l = (struct listener){.log = {hear, pass_progress, l, to->context, false},
+    *l = (struct listener){.log = {hear, forward_progress, l, to->context, false},
                            .inner = {hear, hold_progress, l, to->context, false},
-                           .parts = {hear_errors, pass_progress, l, to->context, false},
+                           .parts = {hear_errors, forward_progress, l, to->context, false},
                            .to = to,
                            .warnings = warnings,
                            .first = first,

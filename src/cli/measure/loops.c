@@ -171,9 +171,9 @@ static void take_row(void *context, int row, const float *line)
 // As one channel of a frame goes through the eye's pattern.
 static relume_status run_fft(loops *l)
 {
-    const struct fft2d_pass forth = {.to = SPECTRUM, .end = fft2d_columns(l->fft)};
+    const struct fft2d_step step = {.to = SPECTRUM, .end = fft2d_columns(l->fft)};
     fft2d_rows(l->fft, l->spectrum, 0, SPECTRUM, fill_row, l);
-    fft2d_pass_columns(l->fft, l->spectrum, &forth);
+    fft2d_step_columns(l->fft, l->spectrum, &step);
     fft2d_columns_back(l->fft, l->spectrum);
     fft2d_rows_back(l->fft, l->spectrum, 0, SPECTRUM, take_row, l);
     return RELUME_OK;

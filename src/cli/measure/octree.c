@@ -83,7 +83,7 @@ struct adding {
     octree *o;
     uint32_t material;
     float *of_present;  // [nodes]
-    size_t room;
+    size_t capacity;
 };
 
 static void add_area(struct adding *a, uint32_t number, vec3 twice)
@@ -123,12 +123,12 @@ static void add_piece(struct adding *a, uint32_t number, const struct piece *pie
 static bool end_material(struct adding *a)
 {
     octree *o = a->o;
-    if (a->room < o->nodes) {
+    if (a->capacity < o->nodes) {
         float *more = mem_resize(a->of_present, o->nodes, sizeof *more);
         if (!more)
             return false;
-        memset(more + a->room, 0, (o->nodes - a->room) * sizeof *more);
-        a->of_present = more, a->room = o->nodes;
+        memset(more + a->capacity, 0, (o->nodes - a->capacity) * sizeof *more);
+        a->of_present = more, a->capacity = o->nodes;
     }
     for (size_t i = 0; i < o->nodes; i++) {
         const float present = o->node[i].area - a->of_present[i];

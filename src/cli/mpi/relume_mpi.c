@@ -56,8 +56,8 @@ static void spread(struct relume_buffer *piece, int from)
     }
 }
 
-// Room for a piece of another process; buffers are written by their writer alone.
-static bool make_room(struct relume_buffer *piece, int64_t size)
+// Allocates a piece of another process; buffers are written by their writer alone.
+static bool allocate_piece(struct relume_buffer *piece, int64_t size)
 {
     const struct relume_writer writer = relume_buffer_writer(piece);
     return !size || (writer.write(writer.user, "", 1, (uint64_t)size - 1));
@@ -106,7 +106,7 @@ static relume_status share(void *user, const char *what, relume_team_make *make,
     for (int i = 0; !status && i < p->team.members; i++)
         if (p->number[i] > MOST_PIECE)
             status = refuse_size(i, what, p->number[i]);
-        else if (i != own && !make_room(&pieces[i], p->number[i]))
+        else if (i != own && !allocate_piece(&pieces[i], p->number[i]))
             status = RELUME_ENOMEM;
     if (!exchange(p, status ? -1 : 0))
         return status ? status : RELUME_ECANCEL;

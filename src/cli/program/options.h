@@ -155,7 +155,7 @@ bool option_given(const struct command_line *line, const void *member);
 const struct option *option_find(const struct option *table, const char *name);
 // "-5" and "-.5" are values, "-o" is an option.
 bool is_option(const char *text);
-// The next "names": room for `most` names that `n` are in already. Returns how many there are.
+// The next "names": an array of `most` names that `n` are in already. Returns how many there are.
 int option_names(const char **names, int n, int most, const struct option *table);
 // RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...? Expected one of ...".
 relume_status unknown_word(const struct relume_log *log, const char *what, const char *given,

@@ -27,9 +27,9 @@ static int digit(char c)
     return c >= '0' && c <= '9' ? c - '0' : isxdigit((unsigned char)c) ? tolower(c) - 'a' + 10 : -1;
 }
 
-// `n` characters of `from`, decoded; the byte behind them in `room`, NULL for what is not encoded
+// `n` characters of `from`, decoded; the byte behind them in `buffer`, NULL for what is not encoded
 // so. No control characters: values go into sentences, and file names.
-static char *decode(char *room, const char *from, size_t n, char between)
+static char *decode(char *buffer, const char *from, size_t n, char between)
 {
     for (size_t i = 0; i < n; i++) {
         char c = from[i];
@@ -45,10 +45,10 @@ static char *decode(char *room, const char *from, size_t n, char between)
             c = between;
         if (iscntrl((unsigned char)c))
             return NULL;
-        *room++ = c;
+        *buffer++ = c;
     }
-    *room++ = '\0';
-    return room;
+    *buffer++ = '\0';
+    return buffer;
 }
 
 static int find(const char *name, size_t n)
@@ -77,7 +77,7 @@ static void warn(const char *name, size_t n, const struct relume_log *log)
         log->message(log->user, RELUME_WARNING, text);
 }
 
-relume_status state_line_read(struct state_entry *out, int *count, int most, char *room,
+relume_status state_line_read(struct state_entry *out, int *count, int most, char *buffer,
                               const char *line, const struct relume_log *log)
 {
     const char *hash = strrchr(line, '#');
@@ -102,10 +102,10 @@ relume_status state_line_read(struct state_entry *out, int *count, int most, cha
             return say(log, RELUME_EINVAL, "--state: expected at most %d entries", most);
         struct state_entry *e = &out[(*count)++];
         snprintf(e->option, sizeof e->option, "--%s", known[which].name);
-        e->value = room;
-        room =
-            equals ? decode(room, equals + 1, n - name - 1, known[which].words ? ' ' : ',') : NULL;
-        if (!room)
+        e->value = buffer;
+        buffer = equals ? decode(buffer, equals + 1, n - name - 1, known[which].words ? ' ' : ',')
+                        : NULL;
+        if (!buffer)
             return say(log, RELUME_EINVAL, "--state: expected %s=VALUE, as the page wrote it",
                        known[which].name);
     }

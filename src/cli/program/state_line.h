@@ -14,12 +14,12 @@ enum { STATE_LINE_MOST = 32768 };  // bytes
 
 struct state_entry {
     char option[24];    // "--light"
-    const char *value;  // in `room`
+    const char *value;  // in `buffer`
 };
-// At most `most` entries of `line`, of which all before a '#' is an address; texts lie in `room`,
+// At most `most` entries of `line`, of which all before a '#' is an address; texts lie in `buffer`,
 // STATE_LINE_MOST bytes. Names that pages alone know are left out, with a warning those that nobody
 // knows. RELUME_EINVAL with a sentence.
-relume_status state_line_read(struct state_entry *out, int *count, int most, char *room,
+relume_status state_line_read(struct state_entry *out, int *count, int most, char *buffer,
                               const char *line, const struct relume_log *log);
 
 // Append "name=value" with its '&', words of `value` separated by blanks. False when it does not

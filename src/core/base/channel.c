@@ -14,10 +14,10 @@ bool channel_pair(int ends[2])
     return !socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends);
 }
 
-// Room for one descriptor, aligned as its header must be.
+// Memory for one descriptor, aligned as its header must be.
 union control {
     struct cmsghdr header;
-    char room[CMSG_SPACE(sizeof(int))];
+    char buffer[CMSG_SPACE(sizeof(int))];
 };
 
 bool channel_send(int end, const void *message, size_t size, int file)
@@ -28,7 +28,7 @@ bool channel_send(int end, const void *message, size_t size, int file)
     if (file >= 0) {
         memset(&control, 0, sizeof control);
         whole.msg_control = &control;
-        whole.msg_controllen = sizeof control.room;
+        whole.msg_controllen = sizeof control.buffer;
         struct cmsghdr *header = CMSG_FIRSTHDR(&whole);
         header->cmsg_level = SOL_SOCKET;
         header->cmsg_type = SCM_RIGHTS;

@@ -266,10 +266,10 @@ static bool copy(struct infile *s, int to)
 int infile_descriptor(struct infile *s)
 {
     if (!s->from.read) {
-        const int file = hold(s), twin = file < 0 ? -1 : fcntl(file, F_DUPFD_CLOEXEC, 3);
+        const int file = hold(s), copy = file < 0 ? -1 : fcntl(file, F_DUPFD_CLOEXEC, 3);
         if (file >= 0)
             let_go(s);
-        return twin;
+        return copy;
     }
     const int memory = channel_memory((size_t)s->size);
     if (memory >= 0 && !copy(s, memory)) {
@@ -451,14 +451,14 @@ static bool grow(struct relume_buffer *b, size_t size)
 {
     if (size <= b->room)
         return true;
-    const size_t room = size > SIZE_MAX / 2 ? size : 2 * size;
-    unsigned char *data = mem_resize(b->data, room, 1);
+    const size_t capacity = size > SIZE_MAX / 2 ? size : 2 * size;
+    unsigned char *data = mem_resize(b->data, capacity, 1);
     if (!data) {
         errno = ENOMEM;
         return false;
     }
     b->data = data;
-    b->room = room;
+    b->room = capacity;
     return true;
 }
 

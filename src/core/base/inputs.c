@@ -21,7 +21,7 @@ struct identity {
 struct inputs {
     pthread_mutex_t mutex;
     struct identity *item;
-    size_t count, room;
+    size_t count, capacity;
     bool incomplete;  // memory was short: everything there counts as read
 };
 
@@ -42,37 +42,37 @@ void inputs_destroy(struct inputs *i)
     mem_free(i);
 }
 
-// Open addressing; `room` is a power of two, a free place has the number 0, which no file has.
-static struct identity *find(struct identity *item, size_t room, struct identity id)
+// Open addressing; `capacity` is a power of two, a free place has the number 0, which no file has.
+static struct identity *find(struct identity *item, size_t capacity, struct identity id)
 {
-    size_t at = (size_t)(id.number * 0x9e3779b97f4a7c15u ^ id.device) & (room - 1);
+    size_t at = (size_t)(id.number * 0x9e3779b97f4a7c15u ^ id.device) & (capacity - 1);
     while (item[at].number && (item[at].number != id.number || item[at].device != id.device))
-        at = (at + 1) & (room - 1);
+        at = (at + 1) & (capacity - 1);
     return &item[at];
 }
 
 static bool grow(struct inputs *i)
 {
-    const size_t room = i->room ? 2 * i->room : 64;
-    struct identity *item = mem_zeroed(room, sizeof *item);
+    const size_t capacity = i->capacity ? 2 * i->capacity : 64;
+    struct identity *item = mem_zeroed(capacity, sizeof *item);
     if (!item)
         return false;
-    for (size_t n = 0; n < i->room; n++)
+    for (size_t n = 0; n < i->capacity; n++)
         if (i->item[n].number)
-            *find(item, room, i->item[n]) = i->item[n];
+            *find(item, capacity, i->item[n]) = i->item[n];
     mem_free(i->item);
     i->item = item;
-    i->room = room;
+    i->capacity = capacity;
     return true;
 }
 
 static void add(struct inputs *i, struct identity id)
 {
-    if (2 * (i->count + 1) > i->room && !grow(i)) {
+    if (2 * (i->count + 1) > i->capacity && !grow(i)) {
         i->incomplete = true;
         return;
     }
-    struct identity *place = find(i->item, i->room, id);
+    struct identity *place = find(i->item, i->capacity, id);
     i->count += !place->number;
     *place = id;
 }
@@ -116,7 +116,7 @@ static bool holds(struct inputs *i, const struct stat *s)
 {
     pthread_mutex_lock(&i->mutex);
     const struct identity id = {s->st_dev, s->st_ino};
-    const bool found = i->incomplete || (i->room && find(i->item, i->room, id)->number);
+    const bool found = i->incomplete || (i->capacity && find(i->item, i->capacity, id)->number);
     pthread_mutex_unlock(&i->mutex);
     return found;
 }

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_DEPTH = 64, FIRST_ROOM = 1024, MAX_DIGITS = 17 };
+enum { MAX_DEPTH = 64, FIRST_CAPACITY = 1024, MAX_DIGITS = 17 };
 
 // ---------------------------------------------------------------- bytes
 
@@ -15,16 +15,16 @@ void jfail(struct jwriter *w, relume_status status)
     w->status = w->status ? w->status : status;
 }
 
-static bool make_room(struct jwriter *w, size_t n)
+static bool grow_text(struct jwriter *w, size_t n)
 {
-    if (n <= w->room - w->size)
+    if (n <= w->capacity - w->size)
         return true;
-    const size_t room = 2 * (w->size + n) + FIRST_ROOM;
-    char *grown = mem_resize(w->text, room, 1);
+    const size_t capacity = 2 * (w->size + n) + FIRST_CAPACITY;
+    char *grown = mem_resize(w->text, capacity, 1);
     if (!grown)
         return false;
     w->text = grown;
-    w->room = room;
+    w->capacity = capacity;
     return true;
 }
 
@@ -34,7 +34,7 @@ static void put_bytes(struct jwriter *w, const char *bytes, size_t n)
         return;
     if (w->file) {
         fwrite(bytes, 1, n, w->file);
-    } else if (make_room(w, n)) {
+    } else if (grow_text(w, n)) {
         memcpy(w->text + w->size, bytes, n);
         w->size += n;
     } else {
@@ -298,5 +298,5 @@ void jdrop(struct jwriter *w)
 {
     mem_free(w->text);
     w->text = NULL;
-    w->size = w->room = 0;
+    w->size = w->capacity = 0;
 }

@@ -22,7 +22,7 @@ struct jwriter {
     unsigned style;
     // Private:
     char *text;  // in memory
-    size_t size, room;
+    size_t size, capacity;
     const char *gap;   // white space before the next token, or NULL: the usual
     uint64_t objects;  // bit d: whether the open level d is an object
     int depth;         // open levels, at most 64

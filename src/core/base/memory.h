@@ -9,10 +9,10 @@
 // Never returns NULL for a count of 0.
 void *mem_array(size_t count, size_t size);
 void *mem_zeroed(size_t count, size_t size);
-// `old` (which may be NULL) with room for more or fewer; on NULL it stays as it was.
+// `old` (which may be NULL) for more or fewer items; on NULL it stays as it was.
 void *mem_resize(void *old, size_t count, size_t size);
-// Room for one more item behind `count` in the array that *array points to, which only this has
-// grown since it was NULL: it has room for 16, or for the next power of two. False when memory is
+// Memory for one more item behind `count` in the array that *array points to, which only this has
+// grown since it was NULL: it holds 16, or the next power of two. False when memory is
 // short; then nothing has changed.
 bool mem_grow(void *array, size_t count, size_t size);
 void *mem_copy(const void *from, size_t count, size_t size);

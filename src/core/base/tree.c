@@ -130,8 +130,8 @@ bool tree_is_device(const char *path)
 static bool list_entry(struct tree_list *out, const char *root, const char *within,
                        const char *name)
 {
-    const bool room = mem_grow(&out->item, out->count, sizeof *out->item);
-    struct tree_entry *e = room ? &out->item[out->count++] : NULL;
+    const bool allocated = mem_grow(&out->item, out->count, sizeof *out->item);
+    struct tree_entry *e = allocated ? &out->item[out->count++] : NULL;
     if (!e)
         return false;
     *e = (struct tree_entry){.name = mem_format("%s%s", within, name)};

@@ -5,8 +5,8 @@
 // points and one code fill sixteen registers.
 #include <math.h>
 
-enum { SUMS = 3, PASS = SUMS * WIDTH };
-_Static_assert(BLOCK % PASS == 0, "a block is whole passes in every set");
+enum { SUMS = 3, STEP = SUMS * WIDTH };
+_Static_assert(BLOCK % STEP == 0, "a block is whole steps in every set");
 
 // The lowest scores of WIDTH points so far.
 struct lowest {
@@ -43,7 +43,7 @@ static inline void scan_tile(lanes sum[SUMS][TILE], const float *points, const f
 static void scan(const float *points, const float *codes, const float *half, int tiles, int dim,
                  float best[BLOCK], float second[BLOCK], int32_t tile[BLOCK])
 {
-    for (int first = 0; first < BLOCK; first += PASS) {
+    for (int first = 0; first < BLOCK; first += STEP) {
         struct lowest low[SUMS];
         for (int r = 0; r < SUMS; r++)
             low[r] = (struct lowest){lanes_all(INFINITY), lanes_all(INFINITY), whole_all(0)};

@@ -3,7 +3,7 @@
 //
 // Every loop over a block is the same arithmetic for each place without a branch, which compilers
 // turn into lanes. Nothing is fused, and roots and quotients are rounded as IEEE says: equal bits
-// in every set. In single precision. Twin: src/world/reflect/rotation.c.
+// in every set. In single precision; src/world/reflect/rotation.c has it in double.
 #include "core/kernel/kernels.h"
 
 #include <math.h>

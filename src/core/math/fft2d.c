@@ -135,7 +135,7 @@ void fft2d_rows_back(const fft2d *f, float *spectrum, int from, int to,
 struct columns {
     const fft2d *f;
     float *spectrum;
-    struct fft2d_pass pass;
+    struct fft2d_step step;
 };
 
 static void gather(float *lines, const fft2d *f, const float *spectrum, int column, int count,
@@ -175,7 +175,7 @@ static void column_block(void *context, size_t item, int worker)
 {
     const struct columns *c = context;
     const fft2d *const f = c->f;
-    const struct fft2d_pass *const p = &c->pass;
+    const struct fft2d_step *const p = &c->step;
     const int column = p->first + (int)item * FFT2D_BLOCK;
     const int count = p->end - column < FFT2D_BLOCK ? p->end - column : FFT2D_BLOCK;
     const size_t block = 2 * FFT2D_BLOCK * (size_t)f->height;
@@ -189,10 +189,10 @@ static void column_block(void *context, size_t item, int worker)
     scatter(p->back ? a : b, f, c->spectrum, column, count);
 }
 
-void fft2d_pass_columns(const fft2d *f, float *spectrum, const struct fft2d_pass *pass)
+void fft2d_step_columns(const fft2d *f, float *spectrum, const struct fft2d_step *step)
 {
-    struct columns columns = {f, spectrum, *pass};
-    const int count = pass->end - pass->first;
+    struct columns columns = {f, spectrum, *step};
+    const int count = step->end - step->first;
     if (count > 0)
         thread_for(f->threads, ((size_t)count + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_block,
                    &columns);

@@ -30,13 +30,13 @@ void fft2d_rows(const fft2d *f, float *spectrum, int from, int to,
 // FFT2D_BLOCK; where `back` they
 // are transformed back afterwards and stored, else stored as they are. Without `visit` the
 // coefficients are stored; with a visit that answers false nothing is.
-struct fft2d_pass {
+struct fft2d_step {
     int from, to, first, end;
     bool (*visit)(void *context, int column, int count, float *lines);
     void *context;
     bool back;
 };
-void fft2d_pass_columns(const fft2d *f, float *spectrum, const struct fft2d_pass *pass);
+void fft2d_step_columns(const fft2d *f, float *spectrum, const struct fft2d_step *step);
 // Columns of a spectrum back, all of them, in place.
 void fft2d_columns_back(const fft2d *f, float *spectrum);
 

@@ -1,7 +1,7 @@
 // lanczos.c - leading eigenvectors by Krylov projection (Lanczos 1950)
 //
 // Every new vector is made orthogonal to all before it, twice, which costs little beside products
-// with a matrix of many pixels, and keeps what single passes lose to rounding (Parlett, Kahan).
+// with a matrix of many pixels, and keeps what single steps lose to rounding (Parlett, Kahan).
 #include "core/math/lanczos.h"
 
 #include "core/base/memory.h"
@@ -15,7 +15,7 @@ static const double NOTHING = 1e-12;
 
 struct space {
     size_t n;
-    int most, count;  // vectors: room for, made
+    int most, count;  // vectors: that fit, made
     double *q;        // [most][n], orthonormal
     double *h;        // [most][most]: the matrix in that basis
     double *next;     // [n]

@@ -30,7 +30,7 @@ bool lsq_eigenvalues(double *matrix, int n, double *values)
 // problem.
 enum { LARGE = 1024, SPARE = 16, POWERS = 12 };
 
-// rows[m][n] -> orthonormal; `small` has room for m x m, `next` for another m x n.
+// rows[m][n] -> orthonormal; `small` holds m x m, `next` for another m x n.
 static bool orthonormalise(double *rows, int m, int n, double *small, double *next)
 {
     for (int again = 0; again < 2; again++) {  // twice: the Gram matrix squares the condition

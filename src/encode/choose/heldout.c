@@ -69,7 +69,7 @@ struct fold {
     float *share;         // as the lesson's
     int learned, judged;  // lights; the judged ones lie in the places behind the learned ones
     size_t planes;
-    size_t room_planes, room_judged;  // that the arrays below have room for
+    size_t most_planes, most_judged;  // that the arrays below hold
     float *value;                     // [planes][pixels]
     struct range *band;               // [bands of all views][planes]
     float *scale, *offset;            // [views][planes]
@@ -213,7 +213,7 @@ static void drop_lesson(struct lesson *l)
     mem_free(l->light);
 }
 
-static void drop_room(struct fold *f)
+static void free_arrays(struct fold *f)
 {
     mem_free(f->value);
     mem_free(f->band);
@@ -235,18 +235,18 @@ static size_t count_bands(const relume_heldout *h)
 }
 
 // Folds are about equally large: what one has used serves the next.
-static relume_status make_room(struct fold *f)
+static relume_status grow_arrays(struct fold *f)
 {
     const relume_heldout *h = f->h;
     const size_t workers = (size_t)thread_count(h->params.threads), chunks = (size_t)h->chunks;
     f->planes = (size_t)relume_coder_info(f->coder)->planes;
-    if (f->planes <= f->room_planes && (size_t)f->judged <= f->room_judged)
+    if (f->planes <= f->most_planes && (size_t)f->judged <= f->most_judged)
         return RELUME_OK;
-    const size_t planes = f->planes > f->room_planes ? f->planes : f->room_planes;
-    const size_t judged = (size_t)f->judged > f->room_judged ? (size_t)f->judged : f->room_judged;
+    const size_t planes = f->planes > f->most_planes ? f->planes : f->most_planes;
+    const size_t judged = (size_t)f->judged > f->most_judged ? (size_t)f->judged : f->most_judged;
     const size_t predict = (planes + judged) * CODER_CHUNK;
     const size_t apply = 3 * (size_t)h->all * CODER_CHUNK;
-    drop_room(f);
+    free_arrays(f);
     f->work_size = predict > apply ? predict : apply;
     f->value = mem_array(planes, h->pixels * sizeof *f->value);
     f->band = mem_array(count_bands(h) * planes, sizeof *f->band);
@@ -257,8 +257,8 @@ static relume_status make_room(struct fold *f)
     f->luma = mem_array(judged, h->pixels * sizeof *f->luma);
     f->part = mem_array(chunks * judged, sizeof *f->part);
     f->scratch = mem_array(workers * ssim_scratch(h->width), sizeof *f->scratch);
-    f->room_planes = planes;
-    f->room_judged = judged;
+    f->most_planes = planes;
+    f->most_judged = judged;
     return f->value && f->band && f->kept && f->scale && f->offset && f->work && f->luma &&
                    f->part && f->scratch
                ? RELUME_OK
@@ -517,7 +517,7 @@ static relume_status measure_fold(struct fold *f, const struct lesson *l, const 
     f->coder = l->coder;
     f->unseen = l->unseen;
     f->share = l->share;
-    status = make_room(f);
+    status = grow_arrays(f);
     if (!status)
         thread_for(h->params.threads, (size_t)h->chunks, find_coefficients, f);
     for (int i = -1; !status && i < r->stores; i++) {
@@ -549,7 +549,7 @@ static relume_status measure_folds(relume_heldout *h, const struct request *r)
             drop_lesson(&all.lesson[i]);
         mem_free(all.lesson);
     }
-    drop_room(&f);
+    free_arrays(&f);
     return status;
 }
 

@@ -11,7 +11,7 @@ struct sampling {
     struct relume_transfer display;
     size_t *pixel;  // [count]: which are looked at, by number over all views, ascending
     size_t count;
-    // Rows of lights with room for `count` pixels; `pixels` are those of the shares before.
+    // Rows of lights for `count` pixels; `pixels` are those of the shares before.
     struct relume_samples *out;
 
     // The share in progress: the chosen pixels `next` .. `end` are still to be read, and `shared`

@@ -20,15 +20,15 @@
 // Groups, the own tiles, and which view each is predicted from.
 static relume_status make_groups(struct coding *c)
 {
-    const struct relume_pack_encode_params *p = c->m->p;
+    const struct relume_pack_encode_params *p = c->f->p;
     struct view_groups *g = &c->groups;
-    const relume_status status = groups_make(g, c->m->capture, c->m->coder);
+    const relume_status status = groups_make(g, c->f->capture, c->f->coder);
     if (status)
         return status;
     c->own = groups_share(g, p->parts ? p->part - 1 : 0, p->parts ? p->parts : 1);
     for (int i = 0; i < g->count; i++)
         for (int k = g->begin[i]; k < g->begin[i + 1]; k++) {
-            struct relume_pack_view *view = &c->m->view[g->view[k]];
+            struct relume_pack_view *view = &c->f->view[g->view[k]];
             view->predicted = k > g->begin[i];
             view->anchor = g->view[g->begin[i]];
         }
@@ -44,11 +44,11 @@ static const double PACKED = 1.003;
 // Finds the bytes left for words when a file size is requested.
 static relume_status find_allowed(double *allowed, struct coding *c)
 {
-    const struct material *m = c->m;
+    const struct contents *f = c->f;
     const double pixels =
-        (double)m->views * relume_capture_width(m->capture) * relume_capture_height(m->capture);
-    const relume_status status = m->p->psnr_db > 0.0 ? RELUME_OK : coding_count_rest(&c->rest, c);
-    *allowed = fmax((m->p->bytes_per_pixel * pixels - c->rest) / PACKED, 1.0);
+        (double)f->views * relume_capture_width(f->capture) * relume_capture_height(f->capture);
+    const relume_status status = f->p->psnr_db > 0.0 ? RELUME_OK : coding_count_rest(&c->rest, c);
+    *allowed = fmax((f->p->bytes_per_pixel * pixels - c->rest) / PACKED, 1.0);
     return status;
 }
 
@@ -60,52 +60,53 @@ static relume_status load_tiles(void *user, int group, struct group_share tiles)
 
 static relume_status find_words(struct coding *c, struct relume_fidelity *report)
 {
-    struct material *m = c->m;
+    struct contents *f = c->f;
     const struct rate_team by = {c->team, load_tiles, c};
     struct rate_result result;
     double allowed = 0.0;
     relume_status status = find_allowed(&allowed, c);
-    const struct rate_target target = {m->p->psnr_db,
+    const struct rate_target target = {f->p->psnr_db,
                                        allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0))};
     if (!status)
-        status = rate_encode(m->words, &result, m->coefficients, m->coder, &c->groups, m->capture,
-                             &target, m->encode, c->team ? &by : NULL);
+        status = rate_encode(f->words, &result, f->coefficients, f->coder, &c->groups, f->capture,
+                             &target, f->encode, c->team ? &by : NULL);
     if (status)
         return status;
     c->effort = result.effort;
-    *report = fidelity_mean(m->report, m->views);
+    *report = fidelity_mean(f->report, f->views);
     const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
     report->psnr_db = result.psnr_db;
     report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
-    const double left = m->p->psnr_db > 0.0 ? (double)INFINITY : allowed - result.bytes;
+    const double left = f->p->psnr_db > 0.0 ? (double)INFINITY : allowed - result.bytes;
     return c->leveled ? coding_find_levels(c, left) : RELUME_OK;
 }
 
-static bool has_levels(const struct material *m)
+static bool has_levels(const struct contents *f)
 {
     struct relume_pack_contents contents;
-    material_contents(&contents, m);
-    return pyramid_is_wanted(m->p->pyramid, relume_capture_width(m->capture),
-                             relume_capture_height(m->capture)) &&
-           (m->p->pyramid || pyramid_is_possible(&contents));
+    contents_describe(&contents, f);
+    return pyramid_is_wanted(f->p->pyramid, relume_capture_width(f->capture),
+                             relume_capture_height(f->capture)) &&
+           (f->p->pyramid || pyramid_is_possible(&contents));
 }
 
-relume_status encode_coded(struct material *m, const char *path, struct relume_fidelity *report)
+relume_status encode_coded(struct contents *f, const char *path,
+                           struct relume_fidelity *report)
 {
-    struct coding c = {.m = m, .team = m->p->team, .leveled = has_levels(m)};
-    c.levels_by = mem_zeroed((size_t)m->views, sizeof *c.levels_by);
+    struct coding c = {.f = f, .team = f->p->team, .leveled = has_levels(f)};
+    c.levels_by = mem_zeroed((size_t)f->views, sizeof *c.levels_by);
     relume_status status = c.levels_by ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = make_groups(&c);
     if (!status)
-        status = coded_rows_create(&c.rows, m, &c.groups, c.team);
+        status = coded_rows_create(&c.rows, f, &c.groups, c.team);
     if (!status)
         status = coded_rows_find_steps(&c.rows);
     if (!status)
         status = coding_each_view(&c, c.own, coding_load_extras);
     if (!status)
         status = find_words(&c, report);
-    if (!status && !m->p->learn_only)
+    if (!status && !f->p->learn_only)
         status = coding_write(&c, path, report);
     coded_rows_destroy(&c.rows);
     groups_destroy(&c.groups);

@@ -16,14 +16,14 @@ static int rows_of(const struct lossy_cut *cut)
     return cut->count / cut->across;
 }
 
-relume_status coded_rows_create(struct coded_rows *out, struct material *m,
+relume_status coded_rows_create(struct coded_rows *out, struct contents *f,
                                 const struct view_groups *groups, const struct relume_team *team)
 {
-    const struct relume_manifest *manifest = relume_capture_manifest(m->capture);
-    const size_t planes = (size_t)relume_coder_info(m->coder)->planes, views = (size_t)m->views;
-    *out = (struct coded_rows){.m = m, .groups = groups, .team = team};
+    const struct relume_manifest *manifest = relume_capture_manifest(f->capture);
+    const size_t planes = (size_t)relume_coder_info(f->coder)->planes, views = (size_t)f->views;
+    *out = (struct coded_rows){.f = f, .groups = groups, .team = team};
     out->masked = manifest->geometry.disc > 0;
-    for (int i = 0; i < m->views; i++)
+    for (int i = 0; i < f->views; i++)
         out->masked |= manifest->view[i].mask != NULL;
     for (int g = 0; g < groups->count; g++)
         out->most = rows_of(&groups->cut[g]) > out->most ? rows_of(&groups->cut[g]) : out->most;
@@ -35,7 +35,7 @@ relume_status coded_rows_create(struct coded_rows *out, struct material *m,
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         out->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    return row_counts_create(&out->counts, m->capture, m->coder, groups->view);
+    return row_counts_create(&out->counts, f->capture, f->coder, groups->view);
 }
 
 void coded_rows_destroy(struct coded_rows *r)
@@ -58,26 +58,26 @@ struct rows {
 static struct rows covered(const struct coded_rows *r, const struct lossy_cut *cut, int first,
                            int end)
 {
-    const int height = relume_capture_height(r->m->capture), below = end * cut->side;
+    const int height = relume_capture_height(r->f->capture), below = end * cut->side;
     return (struct rows){first * cut->side, (below < height ? below : height) - first * cut->side};
 }
 
 // The rows of tiles `first` .. `end` of a view, whether they are there or not.
 static relume_status project_rows(struct coded_rows *r, const struct lossy_cut *cut, int view,
-                                  int first, int end)
+                                 int first, int end)
 {
-    struct material *m = r->m;
-    relume_coefficients **c = &m->coefficients[view];
+    struct contents *f = r->f;
+    relume_coefficients **c = &f->coefficients[view];
     const struct rows rows = covered(r, cut, first, end);
     const bool begun = *c != NULL;
     const relume_status status =
-        begun ? project_more_rows(*c, m->capture, view, rows.first, rows.count, m->encode)
-              : project_some_rows(c, m->coder, m->capture, view, rows.first, rows.count, m->encode);
+        begun ? project_more_rows(*c, f->capture, view, rows.first, rows.count, f->encode)
+              : project_some_rows(c, f->coder, f->capture, view, rows.first, rows.count, f->encode);
     if (status)
         return status;
     if (!begun && r->settled)
-        coefficients_choose_steps(*c, r->total, r->masked, m->encode->step);
-    m->view[view].coefficients = *c;
+        coefficients_choose_steps(*c, r->total, r->masked, f->encode->step);
+    f->view[view].coefficients = *c;
     memset(r->there + (size_t)view * (size_t)r->most + first, true, (size_t)(end - first));
     return RELUME_OK;
 }
@@ -150,7 +150,7 @@ static relume_status begin_share(void *context, int member)
 // Copies the sums of a view's rows, which were encoded last.
 static void count_view(struct coded_rows *r, int view)
 {
-    const relume_coefficients *c = r->m->coefficients[view];
+    const relume_coefficients *c = r->f->coefficients[view];
     const struct relume_census *s = &c->report.census;
     struct row_counts *to = &r->counts;
     struct view_counts *v = &to->view[view];
@@ -179,7 +179,7 @@ static relume_status count_share(void *context)
             if (!v->rows)
                 continue;
             status = project_rows(r, &g->cut[i], g->view[k], first,
-                                  first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
+                                 first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
             if (!status)
                 count_view(r, g->view[k]);
         }
@@ -231,28 +231,28 @@ static struct relume_fidelity report_of(const struct coded_rows *r, int view)
 
 static relume_status set_header_view(struct coded_rows *r)
 {
-    struct material *m = r->m;
+    struct contents *f = r->f;
     relume_status status = RELUME_OK;
-    if (!m->coefficients[0]) {
-        status = coefficients_create(&r->empty, m->coder, relume_capture_width(m->capture),
-                                     relume_capture_height(m->capture), m->encode);
+    if (!f->coefficients[0]) {
+        status = coefficients_create(&r->empty, f->coder, relume_capture_width(f->capture),
+                                     relume_capture_height(f->capture), f->encode);
         if (!status)
-            coefficients_choose_steps(r->empty, r->total, r->masked, m->encode->step);
-        m->view[0].coefficients = r->empty;
+            coefficients_choose_steps(r->empty, r->total, r->masked, f->encode->step);
+        f->view[0].coefficients = r->empty;
     }
     return status;
 }
 
 relume_status coded_rows_find_steps(struct coded_rows *r)
 {
-    struct material *m = r->m;
+    struct contents *f = r->f;
     static const struct team_work work = {begin_share, count_share, add_share};
     const relume_status status =
-        team_share(r->team, "ranges", &work, r, &row_counts_bytes, &r->counts, m->p->log);
-    for (int i = 0; !status && i < m->views; i++) {
-        m->report[i] = report_of(r, i);
-        if (m->coefficients[i])
-            coefficients_choose_steps(m->coefficients[i], r->total, r->masked, m->encode->step);
+        team_share(r->team, "ranges", &work, r, &row_counts_bytes, &r->counts, f->p->log);
+    for (int i = 0; !status && i < f->views; i++) {
+        f->report[i] = report_of(r, i);
+        if (f->coefficients[i])
+            coefficients_choose_steps(f->coefficients[i], r->total, r->masked, f->encode->step);
     }
     r->settled = !status;
     return status ? status : set_header_view(r);

@@ -2,7 +2,7 @@
 #ifndef ENCODE_CODED_ROWS_H
 #define ENCODE_CODED_ROWS_H
 
-#include "encode/encode/material.h"
+#include "encode/encode/contents.h"
 #include "encode/parts/groups.h"
 #include "encode/parts/row_counts.h"
 #include "format/coder/coding.h"
@@ -15,7 +15,7 @@ struct rows_total {
 };
 
 struct coded_rows {
-    struct material *m;
+    struct contents *f;
     const struct view_groups *groups;
     const struct relume_team *team;  // or NULL
     struct range *total;             // [planes]
@@ -29,7 +29,7 @@ struct coded_rows {
 };
 
 // To be destroyed also on failure. RELUME_ENOMEM.
-relume_status coded_rows_create(struct coded_rows *out, struct material *m,
+relume_status coded_rows_create(struct coded_rows *out, struct contents *f,
                                 const struct view_groups *groups, const struct relume_team *team);
 void coded_rows_destroy(struct coded_rows *r);
 
@@ -37,7 +37,7 @@ void coded_rows_destroy(struct coded_rows *r);
 // they are not there yet. An input status, RELUME_ENOMEM, RELUME_EIO, RELUME_ECANCEL.
 relume_status coded_rows_load(struct coded_rows *r, int group, struct group_share tiles);
 relume_status coded_rows_load_view(struct coded_rows *r, int view);
-// The steps, and the report of each view in m->report: each member of the team encodes the rows of
+// The steps, and the report of each view in f->report: each member of the team encodes the rows of
 // tiles of its share. The first view has coefficients then, perhaps without any rows: a header says
 // by it what the planes are like. Errors as above, and of sharing.
 relume_status coded_rows_find_steps(struct coded_rows *r);

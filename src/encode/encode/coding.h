@@ -6,7 +6,7 @@
 #include "format/lossy/av1.h"
 
 struct coding {
-    struct material *m;
+    struct contents *f;
     struct view_groups groups;
     struct coded_rows rows;
     const struct relume_team *team;  // or NULL
@@ -34,7 +34,7 @@ relume_status coding_sum(double *sum, struct coding *c, const char *what,
 
 // ---- what a view has beside its planes (coding_extras.c, coding_levels.c)
 
-// Depth, mask and what shadows move by, unless the view has them. Errors as material_extras.
+// Depth, mask and what shadows move by, unless the view has them. Errors as contents_extras.
 relume_status coding_load_extras(struct coding *c, int view);
 // Bytes of the file that are not words of planes. An input status, RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status coding_count_rest(double *bytes, struct coding *c);

@@ -8,11 +8,11 @@
 // The tiles of a part, with all that belongs to the view beside them where the first is among them.
 static relume_status keep_tiles(struct coding *c, int view, struct group_share tiles)
 {
-    struct relume_pack_view *v = &c->m->view[view];
-    struct lossy_words *own = &c->m->words[view];
+    struct relume_pack_view *v = &c->f->view[view];
+    struct lossy_words *own = &c->f->words[view];
     const struct lossy_words all = *own;
     relume_status status = RELUME_OK;
-    if (c->m->p->parts) {
+    if (c->f->p->parts) {
         *own = (struct lossy_words){0};
         status = lossy_keep_tiles(own, &all, tiles.first, tiles.end);
         mem_free(all.word);
@@ -40,7 +40,7 @@ static relume_status keep_own(struct coding *c)
 // Where people count the parts themselves.
 static void say_empty(const struct coding *c)
 {
-    const struct relume_pack_encode_params *p = c->m->p;
+    const struct relume_pack_encode_params *p = c->f->p;
     const int tiles = c->groups.tile[c->groups.count];
     if (c->own.first == c->own.end && !(c->team && c->team->close))
         log_line(p->log, RELUME_NOTE,
@@ -51,25 +51,25 @@ static void say_empty(const struct coding *c)
 
 relume_status coding_write(struct coding *c, const char *path, const struct relume_fidelity *report)
 {
-    const struct relume_pack_encode_params *p = c->m->p;
-    const int middle = c->m->views / 2;
+    const struct relume_pack_encode_params *p = c->f->p;
+    const int middle = c->f->views / 2;
     struct relume_pack_contents contents;
     struct relume_pack_share share;
     char digest[RELUME_DIGEST];
     say_empty(c);
     relume_status status = keep_own(c);
-    material_contents(&contents, c->m);
+    contents_describe(&contents, c->f);
     contents.report = *report;
     if (!coding_has_first(c, groups_with(&c->groups, middle), c->own))
         contents.preview = NULL;
     else if (!status)
         status = coded_rows_load_view(&c->rows, middle);
     if (!status && p->parts) {
-        status = material_share(&share, digest, c->m);
+        status = contents_share(&share, digest, c->f);
         share.coded = true;
         share.group = groups_of_tile(&c->groups, c->own.first);
         share.measured = report;
         contents.share = &share;
     }
-    return status ? status : material_write(&contents, path, p);
+    return status ? status : contents_write(&contents, path, p);
 }

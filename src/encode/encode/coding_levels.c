@@ -8,25 +8,25 @@
 
 relume_status coding_load_levels(struct coding *c, int view)
 {
-    if (c->m->view[view].levels)
+    if (c->f->view[view].levels)
         return RELUME_OK;
     relume_status status = coded_rows_load_view(&c->rows, view);
     if (!status)
         status = coding_load_extras(c, view);
-    return status ? status : material_reduce(c->m, view);
+    return status ? status : contents_reduce(c->f, view);
 }
 
 // All but the first, which is most of them and which a reader makes of the view.
 static relume_status code_levels(struct coding *c, int view)
 {
-    struct relume_pack_levels *l = &c->m->levels[view];
+    struct relume_pack_levels *l = &c->f->levels[view];
     relume_status status = coding_load_levels(c, view);
     for (int k = 1; !status && k < l->levels; k++) {
         struct lossy_words words = {l->coded[k], l->coded_words[k]};
         if (c->levels_by[view] != c->effort.quantiser) {
             mem_free(l->coded[k]);
             status =
-                lossy_encode(&words, &l->level[k], 1, &c->effort, c->m->p->threads, c->m->p->log);
+                lossy_encode(&words, &l->level[k], 1, &c->effort, c->f->p->threads, c->f->p->log);
             l->coded[k] = words.word;
             l->coded_words[k] = words.count;
         }

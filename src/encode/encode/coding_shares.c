@@ -64,7 +64,7 @@ relume_status coding_sum(double *sum, struct coding *c, const char *what,
     struct team_array array = {&n.bytes, sizeof n.bytes};
     static const struct team_work work = {begin_count, count_share, add_count};
     const relume_status status =
-        team_share(c->team, what, &work, &n, &team_array_bytes, &array, c->m->p->log);
+        team_share(c->team, what, &work, &n, &team_array_bytes, &array, c->f->p->log);
     *sum = n.sum;
     return status;
 }

@@ -5,7 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "encode/encode/coded.h"
-#include "encode/encode/material.h"
+#include "encode/encode/contents.h"
 #include "encode/levels/pyramid.h"
 #include "format/codebook/books.h"
 #include "format/codebook/drawing.h"
@@ -17,18 +17,18 @@
 #include <string.h>
 
 // Indices into the books of view `set`.
-static relume_status assign_view(struct material *m, int i, int set,
+static relume_status assign_view(struct contents *f, int i, int set,
                                  const struct relume_books_params *p)
 {
-    const struct relume_coefficients_info *info = relume_coefficients_info(m->coefficients[i]);
-    uint16_t **index = m->index + i * RELUME_MOST_BOOKS;
-    for (int b = 0; b < relume_books_info(m->books[set])->books; b++)
+    const struct relume_coefficients_info *info = relume_coefficients_info(f->coefficients[i]);
+    uint16_t **index = f->index + i * RELUME_MOST_BOOKS;
+    for (int b = 0; b < relume_books_info(f->books[set])->books; b++)
         if (!(index[b] = mem_array((size_t)info->width * (size_t)info->height, sizeof **index)))
             return RELUME_ENOMEM;
     const relume_status status =
-        relume_books_assign(index, &m->report[i].store_rms, m->books[set], m->coefficients[i], p);
-    m->view[i].books = m->books[set];
-    m->view[i].index = (const uint16_t *const *)index;
+        relume_books_assign(index, &f->report[i].store_rms, f->books[set], f->coefficients[i], p);
+    f->view[i].books = f->books[set];
+    f->view[i].index = (const uint16_t *const *)index;
     return status;
 }
 
@@ -55,14 +55,14 @@ static void shelf_row(const void *user, int row, float *planes, size_t stride)
 }
 
 // What relighting reproduces, which was measured before there were books.
-static relume_status judge_books(const struct material *m)
+static relume_status judge_books(const struct contents *f)
 {
     relume_status status = RELUME_OK;
-    for (int i = m->first; !status && i < m->end; i++) {
-        const struct shelf shelf = {m->view[i].books, m->index + i * RELUME_MOST_BOOKS,
-                                    (size_t)relume_capture_width(m->capture)};
-        status = encode_judge(&m->report[i].psnr_db, m->coefficients[i], m->capture, i,
-                              &(const struct encode_values){shelf_row, &shelf}, m->encode);
+    for (int i = f->first; !status && i < f->end; i++) {
+        const struct shelf shelf = {f->view[i].books, f->index + i * RELUME_MOST_BOOKS,
+                                    (size_t)relume_capture_width(f->capture)};
+        status = encode_judge(&f->report[i].psnr_db, f->coefficients[i], f->capture, i,
+                              &(const struct encode_values){shelf_row, &shelf}, f->encode);
     }
     return status;
 }
@@ -70,28 +70,28 @@ static relume_status judge_books(const struct material *m)
 // A view of another part, for what is learnt from it.
 static relume_status encode_other(void *user, int view, relume_coefficients **out)
 {
-    const struct material *m = user;
-    return relume_project(out, m->coder, m->capture, view, m->encode);
+    const struct contents *f = user;
+    return relume_project(out, f->coder, f->capture, view, f->encode);
 }
 
-static relume_status make_books(struct material *m)
+static relume_status make_books(struct contents *f)
 {
-    const struct relume_pack_encode_params *p = m->p;
+    const struct relume_pack_encode_params *p = f->p;
     struct relume_books_params books = *p->books;
-    const struct books_team by = {p->team, encode_other, m};
+    const struct books_team by = {p->team, encode_other, f};
     relume_status status = RELUME_OK;
     if (books.codes == 65536)
-        books.codes = most_codes(relume_capture_manifest(m->capture));
+        books.codes = most_codes(relume_capture_manifest(f->capture));
     books.threads = p->threads;
     books.team = p->share ? p->team : NULL;
-    for (int i = m->first; !status && i < m->end; i++) {
+    for (int i = f->first; !status && i < f->end; i++) {
         const int set = p->share ? 0 : i;
-        if (set == i || i == m->first)
-            status = books_train(&m->books[set],
-                                 (const relume_coefficients *const *)m->coefficients + set,
-                                 p->share ? m->views : 1, &books, books.team ? &by : NULL);
+        if (set == i || i == f->first)
+            status = books_train(&f->books[set],
+                                 (const relume_coefficients *const *)f->coefficients + set,
+                                 p->share ? f->views : 1, &books, books.team ? &by : NULL);
         if (!status)
-            status = assign_view(m, i, set, &books);
+            status = assign_view(f, i, set, &books);
     }
     return status;
 }
@@ -106,25 +106,25 @@ static relume_status show_rows(void *contents, int row, int rows, float *rgb)
                : relume_pack_preview(contents, row, rows, rgb);
 }
 
-static relume_status write_file(const struct material *m, const struct relume_fidelity *report,
+static relume_status write_file(const struct contents *f, const struct relume_fidelity *report,
                                 const char *path)
 {
     struct relume_pack_contents contents;
     struct relume_pack_share share;
     char digest[RELUME_DIGEST];
-    material_contents(&contents, m);
+    contents_describe(&contents, f);
     contents.report = *report;
-    if (m->p->parts) {
-        const relume_status status = material_share(&share, digest, m);
+    if (f->p->parts) {
+        const relume_status status = contents_share(&share, digest, f);
         if (status)
             return status;
         contents.share = &share;
         contents.report = (struct relume_fidelity){0};
-        const bool middle = m->first <= m->views / 2 && m->views / 2 < m->end;
-        const bool waits = m->rows && !m->coefficients[m->first]->some.stored;
-        contents.preview = !middle || waits ? NULL : m->rows ? show_rows : relume_pack_preview;
+        const bool middle = f->first <= f->views / 2 && f->views / 2 < f->end;
+        const bool waits = f->rows && !f->coefficients[f->first]->some.stored;
+        contents.preview = !middle || waits ? NULL : f->rows ? show_rows : relume_pack_preview;
     }
-    return material_write(&contents, path, m->p);
+    return contents_write(&contents, path, f->p);
 }
 
 // Which views, or rows of one, this part encodes. Of what is coded with loss the groups say it.
@@ -152,14 +152,14 @@ static relume_status find_share(struct encode_share *out, const relume_capture *
 
 // Whether parts tell each other their ranges, so that each packs its own rows: in whole blocks, and
 // of views that are no pyramid, whose levels need all rows.
-static bool may_settle(const struct material *m)
+static bool may_settle(const struct contents *f)
 {
-    const struct relume_pack_encode_params *p = m->p;
-    const int width = relume_capture_width(m->capture), height = relume_capture_height(m->capture);
+    const struct relume_pack_encode_params *p = f->p;
+    const int width = relume_capture_width(f->capture), height = relume_capture_height(f->capture);
     struct encode_share share = {0};
-    bool whole = m->rows && p->team && !pyramid_is_wanted(p->pyramid, width, height);
+    bool whole = f->rows && p->team && !pyramid_is_wanted(p->pyramid, width, height);
     for (int i = 1; whole && i <= p->parts; i++) {
-        encode_share_of(&share, i, p->parts, m->views, height);
+        encode_share_of(&share, i, p->parts, f->views, height);
         whole = share.row % ENCODE_BLOCK == 0;
     }
     return whole;
@@ -173,7 +173,7 @@ static struct range *bands_at(const relume_coefficients *c, int row)
 
 // The bands of the rows of a part, one part at a time.
 struct part_bands {
-    struct material *m;
+    struct contents *f;
     struct encode_share share;
     int part;                // 1 .. parts
     struct range *band;      // [most rows of a part / BAND_ROWS][planes]
@@ -183,10 +183,10 @@ struct part_bands {
 static relume_status begin_part(void *context, int member)
 {
     struct part_bands *b = context;
-    const struct material *m = b->m;
-    const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
+    const struct contents *f = b->f;
+    const size_t planes = (size_t)relume_coder_info(f->coder)->planes;
     b->part = member + 1;
-    encode_share_of(&b->share, b->part, m->p->parts, m->views, relume_capture_height(m->capture));
+    encode_share_of(&b->share, b->part, f->p->parts, f->views, relume_capture_height(f->capture));
     b->sent.size = (size_t)(b->share.rows + BAND_ROWS - 1) / BAND_ROWS * planes * sizeof *b->band;
     return RELUME_OK;
 }
@@ -196,14 +196,14 @@ static relume_status begin_part(void *context, int member)
 static relume_status find_bands(void *context)
 {
     struct part_bands *b = context;
-    const struct material *m = b->m;
+    const struct contents *f = b->f;
     const struct encode_share *s = &b->share;
-    const relume_coefficients *own = b->part == m->p->part ? m->coefficients[m->first] : NULL;
+    const relume_coefficients *own = b->part == f->p->part ? f->coefficients[f->first] : NULL;
     relume_coefficients *made = NULL;
     relume_status status = RELUME_OK;
     if (!own)
         status =
-            project_some_rows(&made, m->coder, m->capture, s->first, s->row, s->rows, m->encode);
+            project_some_rows(&made, f->coder, f->capture, s->first, s->row, s->rows, f->encode);
     if (!status)
         memcpy(b->band, bands_at(own ? own : made, s->row), b->sent.size);
     relume_coefficients_destroy(&made);
@@ -214,37 +214,37 @@ static relume_status find_bands(void *context)
 static relume_status add_bands(void *context)
 {
     const struct part_bands *b = context;
-    const struct material *m = b->m;
-    relume_coefficients *own = m->coefficients[m->first];
-    if (own && b->share.first == m->first)
+    const struct contents *f = b->f;
+    relume_coefficients *own = f->coefficients[f->first];
+    if (own && b->share.first == f->first)
         memcpy(bands_at(own, b->share.row), b->band, b->sent.size);
     return RELUME_OK;
 }
 
-static relume_status share_ranges(struct material *m)
+static relume_status share_ranges(struct contents *f)
 {
-    struct part_bands b = {.m = m};
+    struct part_bands b = {.f = f};
     static const struct team_work work = {begin_part, find_bands, add_bands};
-    const size_t planes = (size_t)relume_coder_info(m->coder)->planes;
-    const size_t bands = ((size_t)relume_capture_height(m->capture) + BAND_ROWS - 1) / BAND_ROWS;
+    const size_t planes = (size_t)relume_coder_info(f->coder)->planes;
+    const size_t bands = ((size_t)relume_capture_height(f->capture) + BAND_ROWS - 1) / BAND_ROWS;
     b.sent.items = b.band = mem_array(bands * planes, sizeof *b.band);
     const relume_status status =
-        b.band ? team_share(m->p->team, "ranges", &work, &b, &team_array_bytes, &b.sent, m->p->log)
+        b.band ? team_share(f->p->team, "ranges", &work, &b, &team_array_bytes, &b.sent, f->p->log)
                : RELUME_ENOMEM;
     mem_free(b.band);
     return status;
 }
 
-static relume_status settle_rows(struct material *m)
+static relume_status settle_rows(struct contents *f)
 {
-    struct relume_image *mask = &m->mask[m->first];
-    relume_status status = share_ranges(m);
-    if (!status && m->row)
-        status = relume_capture_mask(mask, m->capture, m->first, m->p->log);
-    m->view[m->first].mask = mask->data ? mask : NULL;
+    struct relume_image *mask = &f->mask[f->first];
+    relume_status status = share_ranges(f);
+    if (!status && f->row)
+        status = relume_capture_mask(mask, f->capture, f->first, f->p->log);
+    f->view[f->first].mask = mask->data ? mask : NULL;
     return status ? status
-                  : project_settle_rows(m->coefficients[m->first], mask,
-                                        relume_encode_curve(m->capture, m->p->display), m->encode);
+                  : project_settle_rows(f->coefficients[f->first], mask,
+                                       relume_encode_curve(f->capture, f->p->display), f->encode);
 }
 
 // What is said of the work on all views, as that of a part.
@@ -254,14 +254,14 @@ struct part_log {
     double first, extent;
 };
 
-static void pass_message(void *user, enum relume_level level, const char *text)
+static void forward_message(void *user, enum relume_level level, const char *text)
 {
     const struct part_log *p = user;
     if (p->to->message)
         p->to->message(p->to->user, level, text);
 }
 
-static bool pass_progress(void *user, const char *what, double done)
+static bool forward_progress(void *user, const char *what, double done)
 {
     const struct part_log *p = user;
     return log_progress(p->to, what, fmin(fmax((done - p->first) / p->extent, 0.0), 1.0));
@@ -280,29 +280,29 @@ static const struct relume_log *log_part(struct part_log *p, const struct relume
                            .to = to,
                            .first = (share->first + share->row / rows) / views,
                            .extent = (share->rows ? share->rows / rows : share->views) / views};
-    p->log.message = pass_message;
-    p->log.progress = pass_progress;
+    p->log.message = forward_message;
+    p->log.progress = forward_progress;
     p->log.user = p;
     return &p->log;
 }
 
-static relume_status encode_views(struct material *m)
+static relume_status encode_views(struct contents *f)
 {
-    const struct relume_pack_encode_params *p = m->p;
+    const struct relume_pack_encode_params *p = f->p;
     relume_status status = RELUME_OK;
     if (p->learn_only)
-        return may_settle(m) ? share_ranges(m) : RELUME_OK;
-    for (int i = m->first; !status && i < m->end; i++) {
-        status = material_encode(m, i);
+        return may_settle(f) ? share_ranges(f) : RELUME_OK;
+    for (int i = f->first; !status && i < f->end; i++) {
+        status = contents_encode(f, i);
         if (!status)
-            status = material_extras(m, i);
+            status = contents_extras(f, i);
     }
-    if (!status && may_settle(m))
-        status = settle_rows(m);
+    if (!status && may_settle(f))
+        status = settle_rows(f);
     if (!status && p->books)
-        status = make_books(m);
-    for (int i = m->first; !status && !m->rows && i < m->end; i++)
-        status = material_reduce(m, i);
+        status = make_books(f);
+    for (int i = f->first; !status && !f->rows && i < f->end; i++)
+        status = contents_reduce(f, i);
     return status;
 }
 
@@ -322,7 +322,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     };
     if (!path && !p.writer)
         return RELUME_EINVAL;
-    struct material m = {.capture = capture, .coder = coder, .p = &p, .encode = &encode};
+    struct contents f = {.capture = capture, .coder = coder, .p = &p, .encode = &encode};
     struct relume_fidelity total = {0};
     struct encode_share share;
     struct part_log part;
@@ -330,19 +330,19 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     if (!status && p.parts && !encode_is_coded(&p))
         encode.log = log_part(&part, p.log, &share, capture);
     if (!status)
-        status = material_create(&m, &share);
+        status = contents_create(&f, &share);
     if (!status && encode_is_coded(&p)) {
-        status = encode_coded(&m, path, &total);
+        status = encode_coded(&f, path, &total);
     } else if (!status) {
-        status = encode_views(&m);
+        status = encode_views(&f);
         if (!status && p.books && report)
-            status = judge_books(&m);
-        total = fidelity_mean(m.report + m.first, m.end - m.first);
+            status = judge_books(&f);
+        total = fidelity_mean(f.report + f.first, f.end - f.first);
         if (!status && !p.learn_only)
-            status = write_file(&m, &total, path);
+            status = write_file(&f, &total, path);
     }
     if (!status && report)
         *report = total;
-    material_destroy(&m);
+    contents_destroy(&f);
     return status;
 }

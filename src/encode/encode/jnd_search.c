@@ -44,13 +44,13 @@ static void trial_destroy(struct trial_file *t)
 
 // ---------------------------------------------------------------- a log that hears errors alone
 
-static void pass_errors(void *user, enum relume_level level, const char *text)
+static void forward_errors(void *user, enum relume_level level, const char *text)
 {
     if (level == RELUME_ERROR)
         log_line(user, level, "%s", text);
 }
 
-static bool pass_progress(void *user, const char *what, double done)
+static bool forward_progress(void *user, const char *what, double done)
 {
     return log_progress(user, what, done);
 }
@@ -58,8 +58,8 @@ static bool pass_progress(void *user, const char *what, double done)
 static struct relume_log errors_only(const struct relume_log *to)
 {
     struct relume_log out = to ? *to : (struct relume_log){0};
-    out.message = pass_errors;
-    out.progress = pass_progress;
+    out.message = forward_errors;
+    out.progress = forward_progress;
     out.user = (void *)to;
     return out;
 }

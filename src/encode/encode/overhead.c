@@ -16,9 +16,9 @@ static void choose_views(struct relume_pack_view *view, const struct overhead *o
                          int end, enum content with)
 {
     static const uint32_t word[1];
-    const struct material *m = o->m;
-    for (int i = 0; i < m->views; i++) {
-        view[i] = m->view[i];
+    const struct contents *f = o->f;
+    for (int i = 0; i < f->views; i++) {
+        view[i] = f->view[i];
         view[i].levels = NULL;
         if (with != MODELS)
             view[i].shadow = view[i].gloss = NULL;
@@ -26,7 +26,7 @@ static void choose_views(struct relume_pack_view *view, const struct overhead *o
     for (int i = o->groups->begin[first]; i < o->groups->begin[end]; i++) {
         struct relume_pack_view *v = &view[o->groups->view[i]];
         if (with == EXTRAS)
-            v->levels = m->view[o->groups->view[i]].levels;
+            v->levels = f->view[o->groups->view[i]].levels;
         else
             v->depth = v->mask = NULL;
         if (with == EXTRAS || !v->predicted) {
@@ -39,29 +39,29 @@ static void choose_views(struct relume_pack_view *view, const struct overhead *o
 static relume_status measure(double *bytes, const struct overhead *o, int first, int end,
                              enum content with)
 {
-    const struct material *m = o->m;
+    const struct contents *f = o->f;
     struct relume_pack_contents contents;
-    struct relume_pack_view *view = mem_array((size_t)m->views, sizeof *view);
+    struct relume_pack_view *view = mem_array((size_t)f->views, sizeof *view);
     uint64_t size = 0;
     if (!view)
         return RELUME_ENOMEM;
     choose_views(view, o, first, end, with);
-    material_contents(&contents, m);
+    contents_describe(&contents, f);
     contents.view = view;
     contents.preview = with == PREVIEW ? relume_pack_preview : NULL;
     const relume_status status =
         pack_size(&size, &contents,
-                  relume_pack_params(.log = m->p->log, .compression = m->p->compression,
-                                     .threads = m->p->threads));
+                  relume_pack_params(.log = f->p->log, .compression = f->p->compression,
+                                     .threads = f->p->threads));
     *bytes = (double)size;
     mem_free(view);
     return status;
 }
 
-relume_status overhead_create(struct overhead *out, const struct material *m,
+relume_status overhead_create(struct overhead *out, const struct contents *f,
                               const struct view_groups *groups)
 {
-    *out = (struct overhead){.m = m, .groups = groups};
+    *out = (struct overhead){.f = f, .groups = groups};
     return measure(&out->header, out, 0, 1, HEADS);
 }
 

@@ -175,7 +175,7 @@ static void light_beyond(const struct reducing *r, const struct row *w, int chan
     }
 }
 
-// `add` has room for the coefficients of one channel.
+// `add` holds the coefficients of one channel.
 static void correct(const struct reducing *r, const struct row *w, int channel, const float *beyond,
                     float *add, float *values, size_t stride)
 {
@@ -192,14 +192,14 @@ static void correct(const struct reducing *r, const struct row *w, int channel, 
 
 // ---------------------------------------------------------------- bands
 
-// What a worker needs for a band.
-struct room {
+// Scratch memory of one worker, for a band.
+struct scratch {
     float *memory;
     float *rows[2], *values, *predicted[2], *beyond, *add;
     void *waiting;
 };
 
-static bool make_room(struct room *m, const struct reducing *r)
+static bool allocate_scratch(struct scratch *m, const struct reducing *r)
 {
     const struct relume_coefficients_info *from = &r->from->info, *to = &r->to->info;
     const struct relume_coder_info *coder = relume_coder_info(from->coder);
@@ -226,7 +226,7 @@ static bool make_room(struct room *m, const struct reducing *r)
     return m->memory != NULL;
 }
 
-static relume_status reduce_row(const struct reducing *r, struct room *m, int row, float *values)
+static relume_status reduce_row(const struct reducing *r, struct scratch *m, int row, float *values)
 {
     const struct relume_coefficients_info *from = &r->from->info, *to = &r->to->info;
     const size_t wide = (size_t)from->width, width = (size_t)to->width;
@@ -248,7 +248,8 @@ static relume_status reduce_row(const struct reducing *r, struct room *m, int ro
     return status;
 }
 
-static relume_status keep_band(const struct reducing *r, const struct room *m, int first, int rows)
+static relume_status keep_band(const struct reducing *r, const struct scratch *m, int first,
+                               int rows)
 {
     relume_coefficients *to = r->to;
     const size_t planes = (size_t)to->info.planes, width = (size_t)to->info.width;
@@ -271,11 +272,11 @@ static void reduce_band(void *context, size_t item, int worker)
     struct reducing *r = context;
     const int first = (int)item * BAND_ROWS, left = r->to->info.height - first;
     const int rows = left < BAND_ROWS ? left : BAND_ROWS;
-    struct room m = {0};
+    struct scratch m = {0};
     (void)worker;
     if (atomic_load(&r->status))
         return;
-    relume_status status = make_room(&m, r) ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = allocate_scratch(&m, r) ? RELUME_OK : RELUME_ENOMEM;
     for (int y = 0; !status && y < rows; y++)
         status = reduce_row(r, &m, first + y, m.values + (size_t)y * (size_t)r->to->info.width);
     if (!status)

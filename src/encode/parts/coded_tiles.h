@@ -24,7 +24,7 @@ struct coded_tiles {
     int groups;
     bool fetched;  // bytes belong to a piece
 };
-// Room for tiles[groups] of the groups that `number` names. To be destroyed also on failure.
+// Memory for tiles[groups] of the groups that `number` names. To be destroyed also on failure.
 // RELUME_ENOMEM.
 relume_status coded_tiles_create(struct coded_tiles *out, const struct view_groups *groups,
                                  const int *number, const struct group_share *tiles, int count);

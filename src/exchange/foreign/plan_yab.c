@@ -168,10 +168,10 @@ static struct split choose_split(const struct maker *m, int planes)
                            *b = &m->part[PART_B].c;
     struct split s = {1, 1};
     while (s.luminance + 2 * s.chroma < planes) {
-        const bool room = s.chroma < s.luminance && s.chroma < a->count &&
-                          s.luminance + 2 * (s.chroma + 1) <= planes;
+        const bool allowed = s.chroma < s.luminance && s.chroma < a->count &&
+                             s.luminance + 2 * (s.chroma + 1) <= planes;
         const bool more = s.luminance < y->count;
-        if (room &&
+        if (allowed &&
             (!more || (a->value[s.chroma] + b->value[s.chroma]) / 2.0 > y->value[s.luminance]))
             s.chroma++;
         else if (more)

@@ -31,13 +31,13 @@ static bool is_space(uint8_t c)
     return is_blank(c) || c == '\n' || c == '\r';
 }
 
-bool bytes_word(struct bytes *b, char *word, size_t room)
+bool bytes_word(struct bytes *b, char *word, size_t capacity)
 {
     size_t n = 0;
     while (b->at < b->size && is_space(b->data[b->at]))
         b->at++;
     while (b->at < b->size && !is_space(b->data[b->at])) {
-        if (n + 1 >= room)
+        if (n + 1 >= capacity)
             return false;
         word[n++] = (char)b->data[b->at++];
     }

@@ -13,8 +13,8 @@ struct bytes {
 relume_status bytes_load(struct bytes *out, const char *path, const struct relume_log *log);
 void bytes_free(struct bytes *b);
 
-// The next word of at most `room` - 1 characters; blanks and line ends before it are skipped.
-bool bytes_word(struct bytes *b, char *word, size_t room);
+// The next word of at most `capacity` - 1 characters; blanks and line ends before it are skipped.
+bool bytes_word(struct bytes *b, char *word, size_t capacity);
 // The next word as a whole number or as a finite number, nothing else in it.
 bool bytes_integer(struct bytes *b, long *out);
 bool bytes_number(struct bytes *b, double *out);

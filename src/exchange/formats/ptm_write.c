@@ -15,7 +15,7 @@ struct ptm_quantiser ptm_quantiser(double min, double max)
     max = fmax(max, 0.0);
     if (!(max - min > 1e-6))
         return (struct ptm_quantiser){1.0, 0};
-    // one code of room, since the bias is whole
+    // one code of margin, since the bias is whole
     struct ptm_quantiser q = {(max - min) / 254.0, 0};
     q.bias = relume_whole(ceil(-min / q.scale - 1e-9));
     return q;

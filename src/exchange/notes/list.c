@@ -135,7 +135,7 @@ static void enter_all(relume_notes *n)
         enter(n, i);
 }
 
-// Room for one more, at most half of the slots taken.
+// Memory for one more, at most half of the slots taken.
 static bool grow_slots(relume_notes *n)
 {
     enum { LEAST = 64 };

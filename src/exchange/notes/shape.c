@@ -112,9 +112,9 @@ static relume_status read_text(struct shape *s, const char *text)
 
 // ---------------------------------------------------------------- SVG
 
-// The value of an attribute within the tag that begins at `tag`, of at most `room` bytes without
+// The value of an attribute within the tag that begins at `tag`, of at most `most` bytes without
 // its end; false where there is none.
-static bool attribute(char *out, size_t room, const char *tag, const char *name)
+static bool attribute(char *out, size_t most, const char *tag, const char *name)
 {
     const char *end = strchr(tag, '>');
     const size_t n = strlen(name);
@@ -124,7 +124,7 @@ static bool attribute(char *out, size_t room, const char *tag, const char *name)
             continue;
         value += 1 + strspn(value + 1, " ");
         const char *close = *value == '"' || *value == '\'' ? strchr(value + 1, *value) : NULL;
-        if (!close || close > end || (size_t)(close - value) > room)
+        if (!close || close > end || (size_t)(close - value) > most)
             return false;
         memcpy(out, value + 1, (size_t)(close - value - 1));
         out[close - value - 1] = '\0';
@@ -195,15 +195,15 @@ static relume_status read_box(struct shape *s, double x, double y, double width,
     return status;
 }
 
-static relume_status read_tag(struct shape *s, const char *tag, char *room, size_t size)
+static relume_status read_tag(struct shape *s, const char *tag, char *scratch, size_t size)
 {
     const char *name = tag + 1;
     double v[4];
     if (!strncmp(name, "path", 4))
-        return attribute(room, size, tag, "d") ? read_path(s, room) : RELUME_EFORMAT;
+        return attribute(scratch, size, tag, "d") ? read_path(s, scratch) : RELUME_EFORMAT;
     if (!strncmp(name, "polyline", 8) || !strncmp(name, "polygon", 7)) {
         s->kind = name[4] == 'l' ? RELUME_NOTE_LINE : RELUME_NOTE_POLYGON;
-        return attribute(room, size, tag, "points") ? read_points(s, room) : RELUME_EFORMAT;
+        return attribute(scratch, size, tag, "points") ? read_points(s, scratch) : RELUME_EFORMAT;
     }
     if (!strncmp(name, "rect", 4))
         return attribute_number(&v[0], tag, "x") && attribute_number(&v[1], tag, "y") &&
@@ -242,9 +242,9 @@ static relume_status read_svg(struct shape *s, const char *svg)
     if (!tag || strstr(svg, "transform"))
         return RELUME_EUNSUPPORTED;
     const size_t size = strlen(tag) + 1;
-    char *room = mem_array(size, 1);
-    const relume_status status = room ? read_tag(s, tag, room, size) : RELUME_ENOMEM;
-    mem_free(room);
+    char *scratch = mem_array(size, 1);
+    const relume_status status = scratch ? read_tag(s, tag, scratch, size) : RELUME_ENOMEM;
+    mem_free(scratch);
     return status;
 }
 

@@ -54,7 +54,7 @@ static void find_center(struct nearest *n, const float *codes)
     }
 }
 
-// A power of two, so that scaling rounds nothing; kept where single precision has room for squares.
+// A power of two, so that scaling rounds nothing; kept where single precision can hold squares.
 static float find_scale(const struct nearest *n, const float *codes)
 {
     float most = 0.0f;

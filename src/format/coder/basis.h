@@ -44,7 +44,7 @@ void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, doub
 
 // Pixels that are multiplied by the map at once.
 enum { CODER_CHUNK = 1024 };
-// As relume_coder_apply for at most CODER_CHUNK pixels, with room for coder_work floats at `work`.
+// As relume_coder_apply for at most CODER_CHUNK pixels, with coder_work floats at `work`.
 size_t coder_work(const relume_coder *coder);
 void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
                  float *planes, size_t plane_stride, float *work);
@@ -75,7 +75,7 @@ void captured_predict(const struct captured *c, const relume_coder *coder, int c
 void predict_errors(double *error, const double *b, const double *gram, int lights);
 
 // Refits coefficients that are there already (robust.c); `separated` as [channel][light][pixel],
-// luminance coders: the first channel. Room for robust_work doubles at `work`.
+// luminance coders: the first channel. It needs robust_work doubles at `work`.
 relume_status robust_create(struct robust **out, const relume_coder *coder);
 void robust_destroy(struct robust *r);
 size_t robust_work(const struct robust *r);

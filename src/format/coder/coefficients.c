@@ -131,7 +131,7 @@ static bool holds_zero(struct range r)
 // The smallest step with which codes 0..top span the range.
 static float least_step(struct range r, int top)
 {
-    const int steps = holds_zero(r) ? top - 1 : top;  // room for moving the range
+    const int steps = holds_zero(r) ? top - 1 : top;  // one code left to move the range
     return r.max - r.min > TINY_RANGE ? (r.max - r.min) / (float)steps : 0.0f;
 }
 
@@ -317,13 +317,13 @@ static struct range band_of_codes(const struct relume_codes *codes, int plane)
 }
 
 static relume_status keep_row(relume_coefficients *c, const struct relume_codes *codes, int row,
-                              void *room)
+                              void *buffer)
 {
     const size_t width = (size_t)codes->width, first = (size_t)row * width;
     const size_t bytes = relume_storage_bytes(codes->storage), wait = coefficients_waiting(c);
     for (int p = 0; p < codes->planes; p++) {
         const char *from = (const char *)codes->plane[p] + first * bytes;
-        char *to = (char *)room + (size_t)p * width * wait;
+        char *to = (char *)buffer + (size_t)p * width * wait;
         if (bytes == wait)
             memcpy(to, from, width * wait);
         else
@@ -331,7 +331,7 @@ static relume_status keep_row(relume_coefficients *c, const struct relume_codes 
                 ((uint16_t *)(void *)to)[x] = (uint8_t)from[x];
         c->band[row / BAND_ROWS * codes->planes + p] = band_of_codes(codes, p);
     }
-    return scratch_write(c->fd, room, width * (size_t)codes->planes * wait,
+    return scratch_write(c->fd, buffer, width * (size_t)codes->planes * wait,
                          coefficients_offset(c, row))
                ? RELUME_OK
                : RELUME_EIO;
@@ -342,20 +342,20 @@ relume_status relume_coefficients_keep(relume_coefficients **out, const struct r
 {
     struct relume_project_params p = PARAMS_WORK(relume_project_params, params);
     p.storage = codes->storage;
-    void *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof(float));
+    void *buffer = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof(float));
     relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);
-    if (!status && !room)
+    if (!status && !buffer)
         status = RELUME_ENOMEM;
     for (int i = 0; !status && i < codes->planes; i++) {
         (*out)->scale[i] = codes->scale[i];
         (*out)->offset[i] = codes->offset[i];
     }
     for (int row = 0; !status && row < codes->height; row++)
-        status = keep_row(*out, codes, row, room);
+        status = keep_row(*out, codes, row, buffer);
     if (status == RELUME_EIO)
         status = log_fail(p.log, RELUME_EIO, "%s: no room for temporary data; %s",
                           p.scratch ? p.scratch : "$TMPDIR", strerror(errno));
-    mem_free(room);
+    mem_free(buffer);
     if (status)
         relume_coefficients_destroy(out);
     return status;

@@ -84,7 +84,7 @@ void coefficients_quantise(const relume_coefficients *c, int plane, int row, con
 void coefficients_restore(const relume_coefficients *c, int plane, int row, const float *values,
                           size_t n, float *out);
 
-// One row as it waits, unquantised: out[plane][x]; `waiting` has room for as many numbers.
+// One row as it waits, unquantised: out[plane][x]; `waiting` holds as many numbers.
 // RELUME_EIO.
 relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out);
 

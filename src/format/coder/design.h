@@ -18,7 +18,7 @@ struct design {
 };
 relume_status design_create(struct design *out, const relume_coder *coder);
 void design_destroy(struct design *d);
-// Rows and constants at other directions; `weights` has room for 3 k.
+// Rows and constants at other directions; `weights` holds 3 k.
 void design_rows(double *y, double *constant, const struct design *d, const relume_coder *coder,
                  const struct relume_vec3 *direction, float *weights);
 

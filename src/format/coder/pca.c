@@ -5,7 +5,7 @@
 // there is |a(d)' R|^2. Summed over directions with weights w_d this is the metric
 //     M = sum_d w_d a(d) a(d)' / sum_d w_d   + 1 % of its mean eigenvalue on the diagonal,
 // alike for each colour; components of M^1/2 t are optimal in it, and orthonormal, so that one
-// quantiser step serves all. A second pass weighs each direction by the inverse of the error that
+// quantiser step serves all. A second round weighs each direction by the inverse of the error that
 // remains there - decibels are won where little is left - on top of what interpolation itself
 // misses there, ln e = alpha + beta z fitted to the errors of captured lights left out. Sets of
 // more than 400 lights are dense enough to be their own metric.
@@ -263,11 +263,11 @@ static relume_status solve(struct solver *s)
     }
     if (!status)
         status = expect_errors(s, d);
-    for (int pass = 0; !status && pass < 2; pass++) {
+    for (int step = 0; !status && step < 2; step++) {
         status = find_metric(s);
         if (!status)
             status = find_components(s);
-        if (!status && !pass)
+        if (!status && !step)
             emphasise(s);
     }
     return status;

@@ -96,8 +96,8 @@ void sample_sums_free(struct relume_sample_sums *s)
     *s = (struct relume_sample_sums){0};
 }
 
-// Room for what is asked for and not there.
-static bool make_room(struct relume_sample_sums *s, int lights, bool learned)
+// Allocates what is asked for and not there.
+static bool allocate_sums(struct relume_sample_sums *s, int lights, bool learned)
 {
     const size_t n = (size_t)lights;
     s->lights = lights;
@@ -114,7 +114,7 @@ relume_status sample_sums_make(struct relume_sample_sums *s, const struct relume
                                bool learned, int threads)
 {
     const bool has_gram = s->gram, has_covariance = s->covariance;
-    relume_status status = make_room(s, samples->lights, learned) ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = allocate_sums(s, samples->lights, learned) ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !has_gram)
         status = samples_gram(s->gram, samples, threads);
     if (!status && learned && !has_covariance)
@@ -129,7 +129,7 @@ relume_status sample_sums_pick(struct relume_sample_sums *out, const struct relu
 {
     const size_t count = (size_t)n, lights = (size_t)all->lights;
     *out = (struct relume_sample_sums){0};
-    if (!make_room(out, n, all->covariance != NULL)) {
+    if (!allocate_sums(out, n, all->covariance != NULL)) {
         sample_sums_free(out);
         return RELUME_ENOMEM;
     }

@@ -32,7 +32,7 @@ struct av1_effort {
 };
 struct av1_bytes {
     unsigned char *byte;  // [size], mem_free
-    size_t size, room;
+    size_t size, capacity;
 };
 
 // How many sequences can be one group.

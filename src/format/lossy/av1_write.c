@@ -124,12 +124,12 @@ static void fill(aom_image_t *picture, const uint16_t *samples, const struct av1
 
 static bool append(struct av1_bytes *to, const void *from, size_t size)
 {
-    if (to->size + size > to->room) {
+    if (to->size + size > to->capacity) {
         unsigned char *more = mem_resize(to->byte, 2 * (to->size + size), 1);
         if (!more)
             return false;
         to->byte = more;
-        to->room = 2 * (to->size + size);
+        to->capacity = 2 * (to->size + size);
     }
     memcpy(to->byte + to->size, from, size);
     to->size += size;

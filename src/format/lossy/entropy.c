@@ -36,14 +36,14 @@ static void carry(struct entropy_writer *w)
 
 static void put_byte(struct entropy_writer *w, unsigned char byte)
 {
-    if (w->size == w->room) {
-        unsigned char *more = mem_resize(w->byte, 2 * w->room + 64, 1);
+    if (w->size == w->capacity) {
+        unsigned char *more = mem_resize(w->byte, 2 * w->capacity + 64, 1);
         if (!more) {
             w->failed = true;
             return;
         }
         w->byte = more;
-        w->room = 2 * w->room + 64;
+        w->capacity = 2 * w->capacity + 64;
     }
     w->byte[w->size++] = byte;
 }

@@ -14,7 +14,7 @@ struct entropy_chance {
 
 struct entropy_writer {
     unsigned char *byte;  // [size], mem_free
-    size_t size, room;
+    size_t size, capacity;
     uint64_t low;
     uint32_t range;
     bool failed;  // memory is short

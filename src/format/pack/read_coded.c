@@ -117,7 +117,7 @@ static relume_status read_some(void *user, size_t first, size_t count)
                       (struct word_range){s->first + first, count});
 }
 
-// Those alone that a rectangle needs: memory that nobody writes takes no room.
+// Those alone that a rectangle needs: memory that nobody writes takes no space.
 static relume_status read_needed(struct lossy_words *out, const relume_pack *p, int part,
                                  struct word_range range, const struct lossy_shape *shape,
                                  const struct relume_rect *rect)

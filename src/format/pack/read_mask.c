@@ -49,7 +49,7 @@ relume_status reader_mask_codes(relume_pack *p, int view, int level, const struc
     return status;
 }
 
-// Indices have 16 bits: the largest books have no room for another vector.
+// Indices have 16 bits: the largest books cannot hold another vector.
 bool reader_has_nothing(const relume_pack *p, int codes)
 {
     return p->info.has_mask && codes < 65536;

@@ -141,7 +141,7 @@ static relume_status add_parts(struct writer *w, const struct relume_pack_params
     return status;
 }
 
-// Whether a part was given more attributes than it has room for: rather no file than half of one.
+// Whether a part was given more attributes than it can hold: rather no file than half of one.
 static bool is_crowded(const struct writer *w)
 {
     for (int i = 0; i < w->count; i++)

@@ -146,7 +146,7 @@ static inline float quadrant_of(float cosine_h, float sine_h)
     return cosine_h < 0.0f ? 2.0f - q : sine_h < 0.0f ? 4.0f + q : q;
 }
 
-struct passing {  // from the first pass to the second
+struct half_done {  // from the first step to the second
     float square[CIEDE_BLOCK], turned[CIEDE_BLOCK], quadrant[CIEDE_BLOCK];
     float unlike[CIEDE_BLOCK];  // 0 where hues are opposite
 };
@@ -154,8 +154,8 @@ struct passing {  // from the first pass to the second
 // What subtracts is subtracted in double precision before anything is rounded to single. The mean
 // hue is the direction half way between both (a', b'), and (11) is the chord of their angle: cross
 // and dot product say both.
-static void first_pass(const struct lab_block *one, const struct lab_block *two,
-                       struct passing *out)
+static void first_step(const struct lab_block *one, const struct lab_block *two,
+                       struct half_done *out)
 {
     const float tiny = 1e-30f;
     for (int i = 0; i < CIEDE_BLOCK; i++) {
@@ -209,8 +209,8 @@ static float by_the_paper(const struct lab_block *one, const struct lab_block *t
 void ciede2000_block(const struct ciede_tables *tables, const struct lab_block *lab1,
                      const struct lab_block *lab2, float *delta_e)
 {
-    struct passing p;
-    first_pass(lab1, lab2, &p);
+    struct half_done p;
+    first_step(lab1, lab2, &p);
     for (int i = 0; i < CIEDE_BLOCK; i++)
         delta_e[i] = sqrtf(fmaxf(p.square[i] - p.turned[i] * turn_of(tables, p.quadrant[i]), 0.0f));
     for (int i = 0; i < CIEDE_BLOCK; i++)

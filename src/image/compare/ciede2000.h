@@ -5,7 +5,7 @@
 // Between two colours in CIE L*a*b*, as the paper writes it.
 double ciede2000(const double lab1[3], const double lab2[3]);
 
-// The same for many pixels at once, in passes that compilers turn into vector code, without angles.
+// The same for many pixels at once, in loops that compilers turn into vector code, without angles.
 // Relative error below 1e-5 for a pixel, of no preferred sign.
 struct ciede_tables;
 // Made on first use, constant from then on. Thread-safety: safe.

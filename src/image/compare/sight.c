@@ -35,7 +35,7 @@ static bool in_range(const struct relume_image *a, const struct relume_image *b,
             (p->mask->channels == 1 && p->mask->width == a->width && p->mask->height == a->height));
 }
 
-// Room for pictures to go on mirrored beyond their borders, a degree where they are that large.
+// Margin for pictures to go on mirrored beyond their borders, a degree where they are that large.
 static int with_margin(int side, double ppd)
 {
     return fft_good_size(side + smaller_of(side, (int)ceil(ppd)));
@@ -144,9 +144,9 @@ void sight_look(struct sight *s, enum relume_opponent channel)
 {
     for (int i = 0; i < 2; i++) {
         struct channel c = {s, i, channel};
-        const struct fft2d_pass pass = {.to = s->high, .end = fft2d_columns(s->fft)};
+        const struct fft2d_step column_step = {.to = s->high, .end = fft2d_columns(s->fft)};
         fft2d_rows(s->fft, s->spectrum[i], 0, s->high, fill_row, &c);
-        fft2d_pass_columns(s->fft, s->spectrum[i], &pass);
+        fft2d_step_columns(s->fft, s->spectrum[i], &column_step);
         struct spectrum t = {s, s->spectrum[i], s->spectrum[i], channel, -1, -1};
         thread_for(s->threads, (size_t)s->high, weigh_row, &t);
     }

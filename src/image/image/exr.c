@@ -203,13 +203,13 @@ static exr_result_t already_packed(exr_encode_pipeline_t *pipeline)
     return EXR_ERR_SUCCESS;
 }
 
-static bool lend(void **buffer, size_t *room, size_t size)
+static bool lend(void **buffer, size_t *capacity, size_t size)
 {
-    if (*room >= size)
+    if (*capacity >= size)
         return true;
     mem_free(*buffer);
     *buffer = mem_lend(size);
-    *room = *buffer ? size : 0;
+    *capacity = *buffer ? size : 0;
     return *buffer;
 }
 
@@ -221,7 +221,7 @@ static exr_result_t compress_once(struct pipeline *p)
     if (!p->piz)
         return p->compress(e);
     if (!lend(&e->scratch_buffer_1, &e->scratch_alloc_size_1, e->packed_bytes) ||
-        !lend(&e->compressed_buffer, &e->compressed_alloc_size, piz_room(e->packed_bytes)))
+        !lend(&e->compressed_buffer, &e->compressed_alloc_size, piz_bound(e->packed_bytes)))
         return EXR_ERR_OUT_OF_MEMORY;
     e->compressed_bytes = piz_compress(p->piz, e->compressed_buffer, e->scratch_buffer_1,
                                        e->packed_buffer, c->width, c->height, e->channel_count);
@@ -404,7 +404,7 @@ static void write_tiles(struct writing *w, int threads)
 }
 
 static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int block,
-                                 void **packed, size_t *room, const struct relume_log *log);
+                                 void **packed, size_t *capacity, const struct relume_log *log);
 
 int exr_block_rows(enum exr_codec codec)
 {
@@ -433,13 +433,13 @@ static relume_status copy_part(struct writing *w, const struct exr_part *part, i
                                const struct relume_log *log)
 {
     void *packed = NULL;
-    size_t room = 0;
+    size_t capacity = 0;
     const int across = part->tile ? tiles_across(part->width, part->tile) : 1;
     for (int block = 0; !w->status && block < blocks_of(part); block++) {
         exr_chunk_info_t chunk, to;
         int there = block;
         const struct exr_copied s = source_of(part, &there);
-        w->status = read_packed(s.from, s.from_part, &chunk, there, &packed, &room, log);
+        w->status = read_packed(s.from, s.from_part, &chunk, there, &packed, &capacity, log);
         exr_result_t e = w->status ? 0 : written_chunk(&to, w, part, index, block);
         if (!w->status && !e)
             sum_block(w, index, block, &to, packed, chunk.packed_size);
@@ -1197,19 +1197,19 @@ static bool is_changed(const struct layout *l, size_t item, const exr_chunk_info
 
 // A block as it is packed, into *packed, which grows.
 static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_t *chunk, int block,
-                                 void **packed, size_t *room, const struct relume_log *log)
+                                 void **packed, size_t *capacity, const struct relume_log *log)
 {
     struct layout layout = {.across = 1};
     const bool found = find_layout(&layout, file, part) &&
                        !find_chunk(chunk, &layout, (size_t)block) &&
                        chunk->packed_size <= chunk->unpacked_size;
-    if (found && chunk->packed_size > *room) {
+    if (found && chunk->packed_size > *capacity) {
         mem_free(*packed);
-        *room = 0;
+        *capacity = 0;
         *packed = mem_array(chunk->packed_size, 1);
         if (!*packed)
             return RELUME_ENOMEM;
-        *room = chunk->packed_size;
+        *capacity = chunk->packed_size;
     }
     if (found && !exr_read_chunk(file->exr, part, chunk, *packed) &&
         !is_changed(&layout, (size_t)block, chunk, *packed))

@@ -338,20 +338,20 @@ struct writer {
     jvirt_barray_ptr array[3];
     struct jpeg_destination_mgr destination;
     uint8_t *out;
-    size_t room, size;
+    size_t capacity, size;
 };
 
 static void grow(j_compress_ptr info)
 {
     struct writer *w = info->client_data;
-    const size_t room = w->room ? 2 * w->room : 1 << 16;
-    uint8_t *out = mem_resize(w->out, room, 1);
+    const size_t capacity = w->capacity ? 2 * w->capacity : 1 << 16;
+    uint8_t *out = mem_resize(w->out, capacity, 1);
     if (!out)
         longjmp(w->trap.jump, 1);
-    w->destination.next_output_byte = out + w->room;
-    w->destination.free_in_buffer = room - w->room;
+    w->destination.next_output_byte = out + w->capacity;
+    w->destination.free_in_buffer = capacity - w->capacity;
     w->out = out;
-    w->room = room;
+    w->capacity = capacity;
 }
 
 static boolean on_full(j_compress_ptr info)
@@ -363,7 +363,7 @@ static boolean on_full(j_compress_ptr info)
 static void on_end(j_compress_ptr info)
 {
     struct writer *w = info->client_data;
-    w->size = w->room - w->destination.free_in_buffer;
+    w->size = w->capacity - w->destination.free_in_buffer;
 }
 
 static int add_scan(struct writer *w, int at, int components, int first_component, int first,

@@ -66,9 +66,9 @@ static const char *by_product(const char *path)
 
 static void leave_out(struct gathering *g, const char *path, const char *why)
 {
-    const size_t n = strlen(g->names), room = sizeof g->names - n;
+    const size_t n = strlen(g->names), capacity = sizeof g->names - n;
     if (g->skipped++ < 3)
-        snprintf(g->names + n, room, "%s%.60s%s%s%s", n ? ", " : "", path_name(path),
+        snprintf(g->names + n, capacity, "%s%.60s%s%s%s", n ? ", " : "", path_name(path),
                  *why ? " (" : "", why, *why ? ")" : "");
 }
 

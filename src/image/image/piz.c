@@ -39,7 +39,7 @@ void piz_destroy(piz **p)
 }
 
 // An optimal code of n symbols takes no more than log2 n + 1 bits for each on average.
-size_t piz_room(size_t bytes)
+size_t piz_bound(size_t bytes)
 {
     return bytes + bytes / 16 + 8 + 2 * sizeof(uint32_t) + BITMAP + HEAD + SYMBOLS;
 }

@@ -10,10 +10,10 @@ typedef struct piz piz;
 piz *piz_create(void);
 void piz_destroy(piz **p);
 
-// Room for a block of so many bytes, whatever is in it.
-size_t piz_room(size_t bytes);
-// Compress a block of 16-bit samples, words[row][channel][x], to at most piz_room bytes; `work` has
-// room for as many words. 0: not one for this code, with more than 2^14 different values.
+// Largest size of a block of so many bytes, whatever is in it.
+size_t piz_bound(size_t bytes);
+// Compress a block of 16-bit samples, words[row][channel][x], to at most piz_bound bytes; `work`
+// has as many words. 0: not one for this code, with more than 2^14 different values.
 size_t piz_compress(piz *p, uint8_t *out, uint16_t *work, const uint16_t *words, int width,
                     int rows, int channels);
 

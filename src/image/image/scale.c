@@ -99,9 +99,9 @@ static bool create_axis(struct axis *a, const struct side *s, enum relume_filter
     return a->texel && a->weight;
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- one axis
 
-struct pass {
+struct axis_step {
     const struct relume_image *from;
     struct relume_image *to;
     struct axis axis;
@@ -127,7 +127,7 @@ static void add_up(float *to, const struct axis *a, int i, const float *from, si
 }
 
 // Cubics are held within the range of their texels.
-static void scale_held(const struct pass *p, size_t row, float *to, size_t channels)
+static void scale_held(const struct axis_step *p, size_t row, float *to, size_t channels)
 {
     const size_t stride = (size_t)p->from->width * channels;
     for (int x = 0; x < p->to->width; x++, to += channels)
@@ -139,7 +139,7 @@ static void scale_held(const struct pass *p, size_t row, float *to, size_t chann
 }
 
 // A row as the sum of whole rows; 0 x infinite is nothing.
-static void scale_down(const struct pass *p, size_t row, float *to, size_t channels)
+static void scale_down(const struct axis_step *p, size_t row, float *to, size_t channels)
 {
     const size_t n = (size_t)p->to->width * channels, first = row * (size_t)p->axis.taps;
     memset(to, 0, n * sizeof *to);
@@ -169,7 +169,7 @@ static inline __attribute__((always_inline)) void scale_across(const struct axis
 
 static void scale_row(void *context, size_t row, int worker)
 {
-    const struct pass *p = context;
+    const struct axis_step *p = context;
     const size_t channels = (size_t)p->to->channels;
     const float *from = p->from->data + row * (size_t)p->from->width * channels;
     float *to = p->to->data + row * (size_t)p->to->width * channels;
@@ -184,7 +184,7 @@ static void scale_row(void *context, size_t row, int worker)
         scale_across(&p->axis, from, p->to->width, to, channels);
 }
 
-static relume_status scale_axis(struct pass *p, const struct side *side, int threads,
+static relume_status scale_axis(struct axis_step *p, const struct side *side, int threads,
                                 enum relume_filter filter)
 {
     const relume_status status = create_axis(&p->axis, side, filter) ? RELUME_OK : RELUME_ENOMEM;
@@ -215,12 +215,12 @@ relume_status relume_image_scale(struct relume_image *out, const struct relume_i
     relume_status status = relume_image_create(&wide, width, image->height, image->channels);
     if (!status)
         status = relume_image_create(out, width, height, image->channels);
-    struct pass pass = {.from = image, .to = &wide};
+    struct axis_step step = {.from = image, .to = &wide};
     if (!status)
-        status = scale_axis(&pass, &across, p.threads, p.filter);
-    pass = (struct pass){.from = &wide, .to = out, .down = true};
+        status = scale_axis(&step, &across, p.threads, p.filter);
+    step = (struct axis_step){.from = &wide, .to = out, .down = true};
     if (!status)
-        status = scale_axis(&pass, &down, p.threads, p.filter);
+        status = scale_axis(&step, &down, p.threads, p.filter);
     relume_image_destroy(&wide);
     if (status)
         relume_image_destroy(out);

@@ -105,7 +105,7 @@ static size_t own_bytes(const relume_btf *b)
     return relume_btf_bytes(b->info.width, b->info.height, b->info.views, b->info.lights);
 }
 
-relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *params)
+relume_status btf_allocate(relume_btf *btf, const struct relume_btf_params *params)
 {
     char *near = params && params->scratch ? mem_format("%s/values", params->scratch) : NULL;
     btf->own = scratch_map(near, own_bytes(btf));
@@ -130,7 +130,7 @@ relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *
 {
     relume_status status = btf_start(out, info, NULL, params ? params->log : NULL);
     if (!status)
-        status = btf_make_room(*out, params);
+        status = btf_allocate(*out, params);
     if (status && *out)
         relume_btf_destroy(out);
     return relume_status_is_input(status) ? RELUME_EINVAL : status;

@@ -38,7 +38,7 @@ relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, co
 relume_status btf_make_mesh(relume_direction_mesh **out, const vec3 *directions, int n,
                             const char *path, const char *what, const struct relume_log *log);
 // Zeroed scratch memory as its values.
-relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *params);
+relume_status btf_allocate(relume_btf *btf, const struct relume_btf_params *params);
 // A folder of pictures named by their angles.
 relume_status btf_open_pictures(relume_btf **out, const char *path,
                                 const struct relume_btf_params *params);

@@ -81,7 +81,7 @@ static relume_status start(relume_btf **out, const struct captured *c, const cha
         log_line(log, RELUME_WARNING, "%s: %d of %d lights are behind the sample; left out", path,
                  behind, c->m->lights);
     const relume_status status = btf_start(out, &info, path, log);
-    return status ? status : btf_make_room(*out, params);
+    return status ? status : btf_allocate(*out, params);
 }
 
 static relume_status store(const struct captured *c, relume_btf *btf, const struct relume_log *log)

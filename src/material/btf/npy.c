@@ -166,13 +166,13 @@ void npy_close(struct npy_file *file)
 
 // ---------------------------------------------------------------- writing
 
-static size_t make_header(const struct npy *npy, char *out, size_t room)
+static size_t make_header(const struct npy *npy, char *out, size_t capacity)
 {
     char shape[NPY_DIMS * 24] = "";
     for (int i = 0, n = 0; i < npy->dims; i++)
         n += snprintf(shape + n, sizeof shape - (size_t)n, "%zu,%s", npy->shape[i],
                       i + 1 < npy->dims ? " " : "");
-    const int text = snprintf(out + PREFIX, room - PREFIX,
+    const int text = snprintf(out + PREFIX, capacity - PREFIX,
                               "{'descr': '%s', 'fortran_order': False, 'shape': (%s), }",
                               kinds[npy->kind].descr, shape);
     size_t size = PREFIX + (size_t)text + 1;

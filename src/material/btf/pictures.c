@@ -463,7 +463,7 @@ static relume_status make_btf(relume_btf **out, const struct pictures *p)
     if (!status)
         status = btf_start(out, &info, p->path, p->log);
     if (!status)
-        status = btf_make_room(*out, p->params);
+        status = btf_allocate(*out, p->params);
     relume_image_destroy(&first);
     mem_free(view);
     mem_free(light);

@@ -414,7 +414,7 @@ static relume_status make_btf(relume_btf **out, const struct ubo *u)
         return status;
     struct relume_btf_params params = u->params ? *u->params : (struct relume_btf_params){0};
     params.log = u->log;
-    status = btf_make_room(*out, &params);
+    status = btf_allocate(*out, &params);
     return status ? status : ubo_store(u, *out);
 }
 

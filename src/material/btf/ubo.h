@@ -48,7 +48,7 @@ struct ubo_colours {
 const struct ubo_colours *ubo_colours_find(int number);
 enum { UBO_RGB = 0, UBO_LOG_RGB = 12 };
 
-// Multiply it out into a BTF with room.
+// Multiply it out into a BTF that has its memory.
 relume_status ubo_store(const struct ubo *u, relume_btf *btf);
 
 #endif

@@ -95,21 +95,21 @@ relume_status places_find(struct relume_change *out, int least)
 {
     const size_t n = (size_t)out->width * (size_t)out->height;
     struct filling f = {.out = out, .open = mem_array(n, 1)};
-    bool room = f.open;
-    for (size_t i = 0; room && i < n; i++)
+    bool allocated = f.open;
+    for (size_t i = 0; allocated && i < n; i++)
         f.open[i] = out->changed.data[3 * i + 2] > 0.5f;
-    for (size_t i = 0; room && i < n; i++) {
+    for (size_t i = 0; allocated && i < n; i++) {
         if (!f.open[i])
             continue;
-        room = gather(&f, i);
-        if (room && f.count >= (size_t)least)
-            room = add(out, measure(&f));
+        allocated = gather(&f, i);
+        if (allocated && f.count >= (size_t)least)
+            allocated = add(out, measure(&f));
         else
             forget(&f);
     }
-    if (room && out->places)
+    if (allocated && out->places)
         qsort(out->place, (size_t)out->places, sizeof *out->place, larger_first);
     mem_free(f.open);
     mem_free(f.waiting);
-    return room ? RELUME_OK : RELUME_ENOMEM;
+    return allocated ? RELUME_OK : RELUME_ENOMEM;
 }

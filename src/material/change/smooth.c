@@ -9,7 +9,7 @@
 
 enum { REACH = 48 };
 
-struct pass {
+struct axis_step {
     const struct relume_image *from;
     struct relume_image *to;
     bool down;
@@ -20,7 +20,7 @@ struct pass {
 static void do_row(void *context, size_t y, int worker)
 {
     (void)worker;
-    const struct pass *p = context;
+    const struct axis_step *p = context;
     const int width = p->from->width, height = p->from->height;
     const size_t channels = (size_t)p->from->channels, stride = channels * (size_t)width;
     const int sides = p->down ? height : width;
@@ -46,7 +46,7 @@ static void do_row(void *context, size_t y, int worker)
 relume_status smooth(struct relume_image *image, double sigma, int threads)
 {
     struct relume_image between;
-    struct pass p = {.from = image, .to = &between};
+    struct axis_step p = {.from = image, .to = &between};
     p.reach = smaller_of((int)ceil(3.0 * sigma), REACH);
     for (int i = 0; i <= p.reach; i++)
         p.weight[i] = (float)exp(-0.5 * i * i / (sigma * sigma));

@@ -208,8 +208,8 @@ static void fit_pixel(struct fit *f, const struct pixel *p)
 static void fit_row(void *context, size_t item, int worker)
 {
     struct fit *f = context;
-    const size_t room = (size_t)worker * (size_t)f->lights, width = (size_t)f->width;
-    struct pixel p = {f->scratch + room, f->towards + room, f->gain + room, 0, 0};
+    const size_t first = (size_t)worker * (size_t)f->lights, width = (size_t)f->width;
+    struct pixel p = {f->scratch + first, f->towards + first, f->gain + first, 0, 0};
     for (size_t x = 0; x < width; x++) {
         p.at = item * width + x;
         p.of_view = (size_t)f->row * width + p.at;

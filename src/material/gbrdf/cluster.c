@@ -185,14 +185,14 @@ static void seed_centres(struct learning *w, int count, size_t stride, struct ra
         w->count = next + 1;
         look(w, stride, next);
         double sum = 0.0;
-        for (int pass = 0; pass < 2; pass++) {
-            const double target = pass ? random_next(chance) * sum : INFINITY;
+        for (int step = 0; step < 2; step++) {
+            const double target = step ? random_next(chance) * sum : INFINITY;
             sum = 0.0;
             chosen = w->looked - 1;
             for (size_t i = 0; i < w->looked && sum <= target; i++) {
                 const double d = w->distance[i * w->row + (size_t)nearest(w, i)];
                 sum += d * d;
-                if (pass && sum > target)
+                if (step && sum > target)
                     chosen = i;
             }
         }

@@ -154,12 +154,12 @@ static int choose_pairs(struct picture_pair *out, const relume_btf *btf,
 {
     const vec3 *view = relume_btf_info(btf)->view;
     int steep = 0, chosen = 0;
-    for (int pass = 0; pass < 2; pass++)
+    for (int step = 0; step < 2; step++)
         for (int i = 0, seen = 0; i < count; i++) {
             if (view[pairs[i].view[0]].z < LOWEST || view[pairs[i].view[1]].z < LOWEST)
                 continue;
             seen++;
-            if (!pass)
+            if (!step)
                 steep++;
             else if (steep <= MOST_PAIRS ||
                      seen * MOST_PAIRS / steep != (seen - 1) * MOST_PAIRS / steep)

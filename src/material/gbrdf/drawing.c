@@ -47,7 +47,7 @@ static size_t run_length(const uint8_t *byte, size_t at, size_t n)
 }
 
 // PackBits: a count n < 128 and n + 1 bytes, or n > 128 and one byte that comes 257 - n times.
-// `out` has room for 2 n bytes.
+// `out` holds 2 n bytes.
 static size_t pack(uint8_t *out, const uint8_t *byte, size_t n)
 {
     size_t size = 0;

@@ -48,16 +48,16 @@ static void plant_ndf(uint16_t *to, int material)
     static const double share[PLANTED_MATERIALS][3] = {
         {0.23, 0.18, 0.10}, {0.22, 0.22, 0.22}, {0.12, 0.14, 0.18}};
     double sum = 0.0;
-    for (int pass = 0; pass < 2; pass++)
+    for (int step = 0; step < 2; step++)
         for (int j = 0; j < NDF_SIDE; j++)
             for (int i = 0; i < NDF_SIDE; i++) {
                 vec3 h;
                 ndf_direction(i, j, NDF_SIDE, &h);
                 // cells off the disc go on as its rim, for what is interpolated there
                 const double z = fmax(h.z, 0.05), value = shape(material, h.x / z, h.y / z);
-                if (!pass && h.z > 0.0)
+                if (!step && h.z > 0.0)
                     sum += value * ndf_solid_angle((1.0 - h.z) / (1.0 + h.z), NDF_SIDE);
-                for (int c = 0; pass && c < 3; c++)
+                for (int c = 0; step && c < 3; c++)
                     to[3 * (j * NDF_SIDE + i) + c] =
                         half_from_float((float)(share[material][c] * value / sum));
             }

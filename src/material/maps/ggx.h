@@ -35,7 +35,7 @@ struct look {
     float *clipped;        // 1: the value is at least this; else 0
     float *cosine, *lobe;  // n.L, and pi D V n.L, of the last normal and roughness
     float *base, *slope;   // what the pixel shows = base + colour x slope, of the last gloss
-    float *aside[8];       // room for two more of cosine, lobe, base, slope
+    float *aside[8];       // two more of cosine, lobe, base, slope
 };
 enum { LOOK_LANES = 8, LOOK_ARRAYS = 26 };
 

@@ -497,7 +497,7 @@ static relume_status fit(struct maps_fitting *w)
         report_materials(w);
         w->sure = w->shape.confidence;
         w->shape.confidence = (struct relume_image){0};
-        relume_photometric_destroy(&w->shape);  // heights take as much room again
+        relume_photometric_destroy(&w->shape);  // heights take as much memory again
         relume_image_destroy(&w->f0);
     }
     if (status || p->gloss_alone)

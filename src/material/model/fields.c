@@ -306,18 +306,18 @@ bool fields_fit(const struct fields *s, size_t entry, const float *values)
 {
     const size_t lights = (size_t)s->m->lights;
     const struct stored to = stored_at(s, entry);
-    double *room = mem_array(lights * ((size_t)s->m->views + 2), sizeof *room);
+    double *scratch = mem_array(lights * ((size_t)s->m->views + 2), sizeof *scratch);
     uint16_t *halfs = mem_array(3 + to.speculars, sizeof *halfs);
     struct stored spare = to;
     spare.diffuse = halfs;
     spare.lobe = mem_array(to.lobes, sizeof *spare.lobe);
-    const bool good = room && halfs && spare.lobe;
+    const bool good = scratch && halfs && spare.lobe;
     if (good) {
-        struct field_work w = {.y = room, .rest = room + lights, .sum = room + 2 * lights};
+        struct field_work w = {.y = scratch, .rest = scratch + lights, .sum = scratch + 2 * lights};
         spare.specular = halfs + 3;
         fit_entry(s, &to, &spare, values, &w);
     }
-    mem_free(room);
+    mem_free(scratch);
     mem_free(halfs);
     mem_free(spare.lobe);
     return good;

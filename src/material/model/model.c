@@ -205,12 +205,12 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
 static relume_status fit_levels(relume_btf_fitted *m, const relume_btf *btf,
                                 const struct relume_btf_fit_params *p)
 {
-    const struct relume_btf_params room = {.log = p->log, .threads = p->threads};
+    const struct relume_btf_params halving = {.log = p->log, .threads = p->threads};
     relume_btf *half = NULL;
     relume_status status = RELUME_OK;
     for (int i = 1; !status && (p->levels < 0 || i < p->levels) && m->texels > 1; i++) {
         relume_btf *next;
-        status = relume_btf_halve(&next, half ? half : btf, &room);
+        status = relume_btf_halve(&next, half ? half : btf, &halving);
         relume_btf_destroy(&half);
         half = next;
         if (!status)

@@ -249,8 +249,8 @@ static relume_status fit_all(struct fitting *f, bool scaled)
     w.cosine = mem_array(pairs, sizeof *w.cosine);
     w.fitted = mem_array(w.fitted_count, sizeof *w.fitted);
     w.fitted_cosine = mem_array(w.fitted_count, sizeof *w.fitted_cosine);
-    const bool room = w.product && w.cosine && w.fitted && w.fitted_cosine;
-    relume_status status = room ? RELUME_OK : RELUME_ENOMEM;
+    const bool allocated = w.product && w.cosine && w.fitted && w.fitted_cosine;
+    relume_status status = allocated ? RELUME_OK : RELUME_ENOMEM;
     for (size_t i = 0; i < pairs && !status; i++) {
         const vec3 v = m->view[i / lights], l = m->light[i % lights];
         const double product[3] = {v.x * l.x, v.y * l.y, v.z * l.z};

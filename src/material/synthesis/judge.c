@@ -124,8 +124,8 @@ static relume_status judge_repetition(struct relume_grow_quality *out, const uin
     if (bins) {
         int lines = rows;
         fft2d_rows(f, bins, 0, r.height, fill_row, &r);
-        fft2d_pass_columns(f, bins,
-                           &(struct fft2d_pass){.to = r.height,
+        fft2d_step_columns(f, bins,
+                           &(struct fft2d_step){.to = r.height,
                                                 .end = fft2d_columns(f),
                                                 .visit = square,
                                                 .context = &lines,

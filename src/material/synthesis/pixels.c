@@ -48,7 +48,7 @@ struct level {
     uint32_t *texel;              // [height][width] of this level
     uint32_t *next;               // of every fourth
     int round;                    // of putting right
-    int pass;                     // which fourth
+    int fourth;                   // which fourth
     float weight;                 // of the structure, squared, over all texels of the surroundings
     float loose;                  // a squared difference of the structure that is another place's
     float near;                   // that of half a texel
@@ -284,8 +284,8 @@ static void right_block(void *context, size_t item, int worker)
     const struct level *l = context;
     const struct mask_area a = block_area(l, item);
     const float *mask = block_mask(l, &a, worker);
-    for (int y = a.y + l->pass / 2; y < a.y + a.height; y += 2)
-        for (int x = a.x + l->pass % 2; x < a.x + a.width; x += 2) {
+    for (int y = a.y + l->fourth / 2; y < a.y + a.height; y += 2)
+        for (int x = a.x + l->fourth % 2; x < a.x + a.width; x += 2) {
             const size_t in = (size_t)(y - a.y) * (size_t)a.width + (size_t)(x - a.x);
             l->next[next_at(l, x, y)] = best_place(l, mask ? mask + in * MASK_VALUES : NULL, x, y);
         }
@@ -296,8 +296,8 @@ static void take_block(void *context, size_t item, int worker)
     (void)worker;
     const struct level *l = context;
     const struct mask_area a = block_area(l, item);
-    for (int y = a.y + l->pass / 2; y < a.y + a.height; y += 2)
-        for (int x = a.x + l->pass % 2; x < a.x + a.width; x += 2)
+    for (int y = a.y + l->fourth / 2; y < a.y + a.height; y += 2)
+        for (int x = a.x + l->fourth % 2; x < a.x + a.width; x += 2)
             l->texel[(size_t)y * (size_t)l->width + (size_t)x] = l->next[next_at(l, x, y)];
 }
 
@@ -306,7 +306,7 @@ static relume_status put_right(struct level *l, int rounds, double done, double 
     static const unsigned char order[4] = {0, 3, 1, 2};
     for (int i = 0; i < 4 * rounds; i++) {
         l->round = i / 4;
-        l->pass = order[i % 4];
+        l->fourth = order[i % 4];
         thread_for(l->g->params->threads, block_count(l), right_block, l);
         thread_for(l->g->params->threads, block_count(l), take_block, l);
         if (!log_progress(l->g->params->log, "texels", done + share * (i + 1.0) / (4.0 * rounds)))

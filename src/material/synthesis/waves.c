@@ -94,8 +94,8 @@ static relume_status transform(struct spectrum *s)
     float *bins = mem_large(fft2d_size(f) * sizeof *bins);
     if (bins) {
         fft2d_rows(f, bins, 0, s->height, fill_row, s);
-        fft2d_pass_columns(f, bins,
-                           &(struct fft2d_pass){.to = s->height,
+        fft2d_step_columns(f, bins,
+                           &(struct fft2d_step){.to = s->height,
                                                 .end = fft2d_columns(f),
                                                 .visit = weigh,
                                                 .context = s,

@@ -217,13 +217,13 @@ static bool multiply(void *context, int column, int count, float *lines)
 static void transform(struct tile_lines *w, int rows, void (*fill)(void *, int, float *), bool back)
 {
     convolver *const c = w->c;
-    const struct fft2d_pass pass = {.to = rows,
+    const struct fft2d_step step = {.to = rows,
                                     .end = fft2d_columns(c->fft),
                                     .visit = back ? multiply : keep,
                                     .context = w,
                                     .back = back};
     fft2d_rows(c->fft, c->spectrum, 0, rows, fill, w);
-    fft2d_pass_columns(c->fft, c->spectrum, &pass);
+    fft2d_step_columns(c->fft, c->spectrum, &step);
     const int first = c->margin + c->reach_y;
     if (back)
         fft2d_rows_back(c->fft, c->spectrum, first,

@@ -341,9 +341,9 @@ static relume_status diffract(relume_psf *psf, bool real)
                : real    ? fill_real
                          : fill_complex,
                psf);
-    const struct fft2d_pass pass = {
+    const struct fft2d_step column_step = {
         .from = from, .to = to, .end = fft2d_columns(*fft), .visit = store_power, .context = psf};
-    fft2d_pass_columns(*fft, psf->field, &pass);
+    fft2d_step_columns(*fft, psf->field, &column_step);
     return RELUME_OK;
 }
 

@@ -19,7 +19,7 @@ struct slices {
     fft2d *fft;
     float *wave, *spectrum, *shadow;
     struct relume_eye_disc *disc;  // of one depth
-    int room;
+    int capacity;
     float *turn;  // [n] pairs: exp(-i pi lambda z f^2) by frequency along one axis
 };
 
@@ -47,7 +47,7 @@ static relume_status create(struct slices **out, const struct canvas *canvas, in
         return RELUME_ENOMEM;
     s->n = canvas->n;
     s->texel_mm = canvas->texel_mm;
-    s->room = discs;
+    s->capacity = discs;
     bool good = !fft2d_create(&s->fft, s->n, s->n, false, threads);
     s->wave = mem_zeroed(2 * n * n, sizeof *s->wave);
     s->shadow = mem_array(n * n, sizeof *s->shadow);
@@ -122,9 +122,9 @@ static void travel(struct slices *s, double distance_mm)
         s->turn[2 * i + 1] = (float)sin(phase);
     }
     fft2d_rows(s->fft, s->spectrum, 0, s->n, give_row, s);
-    const struct fft2d_pass pass = {
+    const struct fft2d_step column_step = {
         .to = s->n, .end = s->n, .visit = turn_phases, .context = s, .back = true};
-    fft2d_pass_columns(s->fft, s->spectrum, &pass);
+    fft2d_step_columns(s->fft, s->spectrum, &column_step);
     fft2d_rows_back(s->fft, s->spectrum, 0, s->n, take_row, s);
 }
 
@@ -152,7 +152,7 @@ relume_status slices_run(float **wave, struct slices **slices, struct canvas *ca
 {
     relume_status status = RELUME_OK;
     *wave = NULL;
-    if (*slices && ((*slices)->n != canvas->n || (*slices)->room < aperture->vitreous.count))
+    if (*slices && ((*slices)->n != canvas->n || (*slices)->capacity < aperture->vitreous.count))
         slices_destroy(slices);
     if (!*slices)
         status = create(slices, canvas, aperture->vitreous.count, threads);

@@ -56,7 +56,7 @@ static void say_about(void *user, enum relume_level level, const char *text)
         log_line(a->to, level, "%s: %s", a->name, text);
 }
 
-static bool pass_progress(void *user, const char *what, double done)
+static bool forward_progress(void *user, const char *what, double done)
 {
     const struct about *a = user;
     return log_progress(a->to, what, done);
@@ -357,8 +357,8 @@ static void collect(const struct evaluator *e, struct relume_evaluation *out)
 static relume_status make_renderer(struct evaluator *e)
 {
     e->about = (struct about){.to = e->params.log, .name = e->params.file};
-    e->about.log =
-        (struct relume_log){say_about, pass_progress, &e->about, context_of(e->params.log), false};
+    e->about.log = (struct relume_log){say_about, forward_progress, &e->about,
+                                       context_of(e->params.log), false};
     const relume_status status = relume_image_create(&e->relit, e->info->width, e->info->height, 3);
     return status ? status
                   : relume_renderer_create(

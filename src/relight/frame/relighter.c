@@ -309,7 +309,7 @@ static relume_status relight_group(relume_relighter *r, struct group *g,
     return status;
 }
 
-// Codes that fold take any number of distant lights in one pass.
+// Codes that fold take any number of distant lights in one loop.
 static bool stands_alone(const struct relume_codes *codes, const struct relume_light *light)
 {
     const bool folds = codes->domain != RELUME_DOMAIN_DISPLAY || codes->books == 1;

@@ -22,7 +22,7 @@ enum { RELUME_RELIGHTER_GROUPS = 17 };  // at most
 struct relume_relighter_params {
     size_t struct_size;  // filled by the macro (base.h)
     int groups;  // pictures kept of each view, [1, RELUME_RELIGHTER_GROUPS]; default 1, of all
-                 // lights. With more of them the first is of the distant lights that cost one pass
+                 // lights. With more of them the first is of the distant lights that cost one loop
                  // together, the others are each of one light, near or decoded on its own, as far
                  // as they go: one that moves is relit alone. Their sum is rounded otherwise
     unsigned cpu_off;  // as relume_relight_params

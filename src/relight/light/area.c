@@ -14,7 +14,7 @@
 int relume_light_patch_side(const struct relume_light *area, double distance)
 {
     const double half = fmax(vec3_length(area->u), vec3_length(area->v));
-    // rho^-2n = e^-7 leaves room for the pole's second order.
+    // rho^-2n = e^-7 leaves some for the pole's second order.
     const double side = ceil(1.0 + 3.5 / asinh(fmax(distance, 1e-9 * half) / half));
     return side < RELUME_LIGHT_PATCHES_MOST ? (int)side : RELUME_LIGHT_PATCHES_MOST;
 }

@@ -122,7 +122,7 @@ static void fill_tile(void *context, size_t tile, int worker)
                  node_at(g, g->info.rows + t / across * 3 + i / 3, t % across * 3 + i % 3));
 }
 
-// The cells of the lights and of the places opposite to them. Room for two of each light.
+// The cells of the lights and of the places opposite to them. Memory for two of each light.
 static int find_starts(int (*start)[2], const struct relume_weight_grid *g)
 {
     const struct relume_coder_info *info = relume_coder_info(g->info.coder);

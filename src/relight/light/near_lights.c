@@ -285,17 +285,17 @@ static size_t lanes_for(const struct near_lights *near)
     return lanes < LANES ? lanes : LANES;
 }
 
-size_t near_lights_room(const struct near_lights *near)
+size_t near_lights_scratch(const struct near_lights *near)
 {
     return near->count ? (lanes_for(near) + 1) * weights_of(near) + 3 : 0;
 }
 
 void near_lights_add(const struct near_lights *near, size_t first, size_t n, float *out,
-                     float *room)
+                     float *scratch)
 {
-    struct block b = {.lanes = (int)lanes_for(near), .weight = room};
+    struct block b = {.lanes = (int)lanes_for(near), .weight = scratch};
     const bool fold = !near->display && near->count > 1;
-    b.one = room + (size_t)b.lanes * weights_of(near);
+    b.one = scratch + (size_t)b.lanes * weights_of(near);
     for (size_t done = 0; done < n; done += (size_t)b.n) {
         b.first = first + done;
         b.n = n - done < (size_t)b.lanes ? (int)(n - done) : b.lanes;

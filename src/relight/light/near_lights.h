@@ -28,10 +28,10 @@ relume_status near_lights_create(struct near_lights *near, const struct relume_l
                                  int n);
 void near_lights_destroy(struct near_lights *near);
 
-// Add what they give to the `n` pixels from `first` on: out[n][3], linear. `room` has
-// near_lights_room floats.
-size_t near_lights_room(const struct near_lights *near);
+// Add what they give to the `n` pixels from `first` on: out[n][3], linear. `scratch` has
+// near_lights_scratch floats.
+size_t near_lights_scratch(const struct near_lights *near);
 void near_lights_add(const struct near_lights *near, size_t first, size_t n, float *out,
-                     float *room);
+                     float *scratch);
 
 #endif

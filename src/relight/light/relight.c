@@ -1,8 +1,8 @@
 // relight.c - superposition (Wong 1998, Eq. 7.6): the value of a pixel is the sum over lights of
 // reflectance x radiance. In the linear domain the sum over lights moves inside the dot product:
 //     sum_i E_i sum_k c_k b_k(L_i) = sum_k c_k w_k     with w_k = sum_i E_i b_k(L_i),
-// so any number of lights costs one pass. In the display domain each light is decoded on its own,
-// made linear, then added.
+// so any number of lights costs one loop over the codes. In the display domain each light is
+// decoded on its own, made linear, then added.
 #include <relume/relight/relight.h>
 
 #include "core/base/log.h"
@@ -28,21 +28,21 @@
 enum { CHUNK = 8192 };
 
 // One dot product per channel: quantiser steps and constants folded in.
-struct pass {
+struct product {
     float *weights;  // [3][coefficients]
     float bias[3];
     float rgb[3];  // display domain: colour of the light, applied after linearising
     float **book;  // [books] -> [codes][3]: with codebooks, what their vectors add
 };
 
-// What a worker writes on the way.
-struct room {
+// Scratch memory of one worker.
+struct scratch {
     float sum[3][CHUNK];       // by channel, so that the kernels write in a row
     float shown[CHUNK];        // one light, before it is made linear
     float part[CHUNK];         // a group of planes, or a colour
     float distant[3 * CHUNK];  // environments of the display domain
     float rgb[3 * CHUNK];      // what becomes 8 bits
-    float near[];              // near_lights_room
+    float near[];              // near_lights_scratch
 };
 
 struct job {
@@ -52,39 +52,39 @@ struct job {
     uint32_t *out_rgba8;  // [pixels]
     struct byte_coder *coder;
     uint32_t *words;  // [codes]: of a single codebook, coded for the screen
-    struct pass *passes;
+    struct product *products;
     int count;
     bool display;
-    bool linear;  // passes give linear light; else they are made linear, then added
-    bool guard;   // environments are among what the passes sum
+    bool linear;  // products give linear light; else they are made linear, then added
+    bool guard;   // environments are among what the products sum
     struct curve curve;
     const relume_weight_grid *grid;  // borrowed, or made
     relume_weight_grid *made;
     struct near_lights near;
-    char *room;  // [workers] of room_size
-    size_t room_size;
+    char *scratch;  // [workers] of scratch_size
+    size_t scratch_size;
     // Display domain: environments are relit from linear codes of their own, ...
     struct job *distant;
     struct relume_light *lights;  // or, without those, every environment by the captured lights
 };
 
-static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
+static void fold_quantiser(struct product *product, const struct relume_codes *codes)
 {
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     for (int c = 0; c < 3; c++) {
-        double bias = (double)pass->bias[c];
+        double bias = (double)product->bias[c];
         for (int k = 0; k < info->coefficients; k++) {
-            float *w = &pass->weights[c * info->coefficients + k];
+            float *w = &product->weights[c * info->coefficients + k];
             const int p = relume_coder_plane(info, k, c);
             bias += (double)*w * (double)codes->offset[p];
             *w *= codes->scale[p];
         }
-        pass->bias[c] = (float)bias;
+        product->bias[c] = (float)bias;
     }
 }
 
-// Linear domain: all lights into one pass. `one` has room for one light's weights.
-static void add_light(struct pass *pass, const relume_coder *coder,
+// Linear domain: all lights into one product. `one` holds one light's weights.
+static void add_light(struct product *product, const relume_coder *coder,
                       const struct relume_light *light, float *one)
 {
     const int k = relume_coder_info(coder)->coefficients;
@@ -95,8 +95,8 @@ static void add_light(struct pass *pass, const relume_coder *coder,
     for (int c = 0; c < 3; c++) {
         const float value = share * light->rgb[c];
         for (int i = 0; i < k; i++)
-            pass->weights[c * k + i] += value * one[c * k + i];
-        pass->bias[c] += value * constant[c];
+            product->weights[c * k + i] += value * one[c * k + i];
+        product->bias[c] += value * constant[c];
     }
 }
 
@@ -109,78 +109,78 @@ static int count_kind(const struct relume_light *lights, int n, enum relume_ligh
 }
 
 // One directional light alone, its colour and share kept for later.
-static void set_displayed(struct pass *pass, const relume_coder *coder,
+static void set_displayed(struct product *product, const relume_coder *coder,
                           const struct relume_light *light, float *one)
 {
     struct relume_light white = {.rgb = {1.0f, 1.0f, 1.0f}};
     const float share =
         (float)relume_coder_clamp(&white.direction, coder, vec3_unit(light->direction));
     for (int c = 0; c < 3; c++)
-        pass->rgb[c] = share * light->rgb[c];
-    add_light(pass, coder, &white, one);
+        product->rgb[c] = share * light->rgb[c];
+    add_light(product, coder, &white, one);
 }
 
-static void fill_passes(struct job *job, const struct relume_light *lights, int n, float *one)
+static void fill_products(struct job *job, const struct relume_light *lights, int n, float *one)
 {
     const relume_coder *coder = job->codes->coder;
     for (int i = 0, next = 0; i < n; i++) {
         const enum relume_light_kind kind = lights[i].kind;
-        struct pass *pass = job->passes;
+        struct product *product = job->products;
         if (kind == RELUME_LIGHT_ENVIRONMENT && !job->display)
-            relume_environment_weights(pass->weights, pass->bias, job->grid, &lights[i]);
+            relume_environment_weights(product->weights, product->bias, job->grid, &lights[i]);
         if (kind != RELUME_LIGHT_DIRECTIONAL)
             continue;
         if (job->display)
-            set_displayed(&pass[next++], coder, &lights[i], one);
+            set_displayed(&product[next++], coder, &lights[i], one);
         else
-            add_light(pass, coder, &lights[i], one);
+            add_light(product, coder, &lights[i], one);
     }
 }
 
-// Display domain: a pass for every directional light; a single codebook sums into the first.
-static relume_status make_passes(struct job *job, const struct relume_light *lights, int n)
+// Display domain: a product for every directional light; a single codebook sums into the first.
+static relume_status make_products(struct job *job, const struct relume_light *lights, int n)
 {
     const size_t size = 3 * (size_t)relume_coder_info(job->codes->coder)->coefficients;
     const int directional = count_kind(lights, n, RELUME_LIGHT_DIRECTIONAL);
     const int least = job->display && job->codes->books != 1 ? 0 : 1;
     job->count = job->display && directional > least ? directional : least;
-    job->passes = mem_zeroed((size_t)job->count, sizeof *job->passes);
+    job->products = mem_zeroed((size_t)job->count, sizeof *job->products);
     float *one = mem_array(size, sizeof *one);
-    bool good = job->passes && one;
+    bool good = job->products && one;
     for (int i = 0; good && i < job->count; i++)
-        good = (job->passes[i].weights = mem_zeroed(size, sizeof(float))) != NULL;
+        good = (job->products[i].weights = mem_zeroed(size, sizeof(float))) != NULL;
     if (good)
-        fill_passes(job, lights, n, one);
+        fill_products(job, lights, n, one);
     for (int i = 0; good && i < job->count; i++)
         if (!job->codes->books)
-            fold_quantiser(&job->passes[i], job->codes);
+            fold_quantiser(&job->products[i], job->codes);
     mem_free(one);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
-static bool relight_books(struct job *job, struct pass *pass)
+static bool relight_books(struct job *job, struct product *product)
 {
     static const float nothing[3] = {0.0f, 0.0f, 0.0f};
     const struct relume_codes *codes = job->codes;
-    pass->book = mem_zeroed((size_t)codes->books, sizeof *pass->book);
-    for (int b = 0; pass->book && b < codes->books; b++) {
-        pass->book[b] = mem_array((size_t)codes->book_codes[b], 3 * sizeof(float));
-        if (!pass->book[b])
+    product->book = mem_zeroed((size_t)codes->books, sizeof *product->book);
+    for (int b = 0; product->book && b < codes->books; b++) {
+        product->book[b] = mem_array((size_t)codes->book_codes[b], 3 * sizeof(float));
+        if (!product->book[b])
             return false;
-        book_relight(pass->book[b], codes, b, pass->weights, b ? nothing : pass->bias);
+        book_relight(product->book[b], codes, b, product->weights, b ? nothing : product->bias);
     }
-    return pass->book != NULL;
+    return product->book != NULL;
 }
 
-// With one codebook all lights come together in its vectors, linear: one pass is left.
+// With one codebook all lights come together in its vectors, linear: one product is left.
 static void sum_single_book(struct job *job)
 {
     const size_t n = 3 * (size_t)job->codes->book_codes[0];
     for (int p = 0; p < job->count; p++) {
-        const struct pass *pass = &job->passes[p];
+        const struct product *product = &job->products[p];
         for (size_t i = 0; i < n; i++) {
-            const float v = pass->rgb[i % 3] * curve_decode(&job->curve, pass->book[0][i]);
-            job->passes[0].book[0][i] = v + (p ? job->passes[0].book[0][i] : 0.0f);
+            const float v = product->rgb[i % 3] * curve_decode(&job->curve, product->book[0][i]);
+            job->products[0].book[0][i] = v + (p ? job->products[0].book[0][i] : 0.0f);
         }
     }
     job->linear = true;
@@ -203,10 +203,10 @@ static void keep_above_zero(float *rgb, size_t n)
 static relume_status relight_vectors(struct job *job)
 {
     for (int p = 0; p < job->count; p++)
-        if (!relight_books(job, &job->passes[p]))
+        if (!relight_books(job, &job->products[p]))
             return RELUME_ENOMEM;
     if (job->guard && job->codes->books == 1)
-        keep_above_zero(job->passes[0].book[0], (size_t)job->codes->book_codes[0]);
+        keep_above_zero(job->products[0].book[0], (size_t)job->codes->book_codes[0]);
     if (job->display && job->codes->books == 1)
         sum_single_book(job);
     return RELUME_OK;
@@ -238,13 +238,13 @@ static void multiply_colour(const struct job *job, int plane, size_t offset, siz
         out[i] *= colour[i];
 }
 
-static void dot_planes(const struct job *job, const struct pass *pass, int channel, size_t first,
-                       size_t n, float *out, float *part)
+static void dot_planes(const struct job *job, const struct product *product, int channel,
+                       size_t first, size_t n, float *out, float *part)
 {
     const struct relume_codes *codes = job->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const size_t offset = first * relume_storage_bytes(codes->storage);
-    const float *w = pass->weights + channel * info->coefficients;
+    const float *w = product->weights + channel * info->coefficients;
     const void *planes[GROUP];
     float weights[GROUP];
     int count = 0;
@@ -258,8 +258,8 @@ static void dot_planes(const struct job *job, const struct pass *pass, int chann
         }
         if (count < GROUP && !last)
             continue;
-        dot_group(job, begun ? part : out, n, begun ? 0.0f : pass->bias[channel], planes, weights,
-                  count);
+        dot_group(job, begun ? part : out, n, begun ? 0.0f : product->bias[channel], planes,
+                  weights, count);
         for (size_t i = 0; begun && i < n; i++)
             out[i] += part[i];
         begun = true;
@@ -269,12 +269,12 @@ static void dot_planes(const struct job *job, const struct pass *pass, int chann
         multiply_colour(job, info->coefficients + channel, offset, n, out, part);
 }
 
-static void look_up_channel(const struct job *job, const struct pass *pass, size_t channel,
+static void look_up_channel(const struct job *job, const struct product *product, size_t channel,
                             size_t first, size_t n, float *out)
 {
     for (int b = 0; b < job->codes->books; b++) {
         const uint16_t *index = job->codes->index[b] + first;
-        const float *add = pass->book[b] + channel;
+        const float *add = product->book[b] + channel;
         for (size_t i = 0; i < n; i++)
             out[i] = (b ? out[i] : 0.0f) + add[3 * (size_t)index[i]];
     }
@@ -301,26 +301,26 @@ static void decode_pixel(double value[3], const struct relume_codes *codes, size
     }
 }
 
-static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
-                        size_t n, float *out, float *part)
+static void dot_channel(const struct job *job, const struct product *product, int channel,
+                        size_t first, size_t n, float *out, float *part)
 {
     if (job->codes->books)
-        look_up_channel(job, pass, (size_t)channel, first, n, out);
+        look_up_channel(job, product, (size_t)channel, first, n, out);
     else
-        dot_planes(job, pass, channel, first, n, out, part);
+        dot_planes(job, product, channel, first, n, out, part);
 }
 
 // Display domain: every light is decoded and made linear before it is added.
 static void sum_displayed(const struct job *job, int channel, size_t first, size_t n,
-                          struct room *room)
+                          struct scratch *scratch)
 {
-    float *sum = room->sum[channel], *codes = room->shown;
+    float *sum = scratch->sum[channel], *codes = scratch->shown;
     memset(sum, 0, n * sizeof *sum);
     for (int p = 0; p < job->count; p++) {
-        const struct pass *pass = &job->passes[p];
-        dot_channel(job, pass, channel, first, n, codes, room->part);
+        const struct product *product = &job->products[p];
+        dot_channel(job, product, channel, first, n, codes, scratch->part);
         for (size_t i = 0; i < n; i++)
-            sum[i] += pass->rgb[channel] * curve_decode(&job->curve, codes[i]);
+            sum[i] += product->rgb[channel] * curve_decode(&job->curve, codes[i]);
     }
 }
 
@@ -330,66 +330,67 @@ static size_t chunk_size(const struct job *job, size_t first)
     return pixels - first < CHUNK ? pixels - first : CHUNK;
 }
 
-static void interleave(float *rgb, const struct room *room, size_t n)
+static void interleave(float *rgb, const struct scratch *scratch, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
-            rgb[3 * i + c] = room->sum[c][i];
+            rgb[3 * i + c] = scratch->sum[c][i];
 }
 
 static void relight_distant(const struct job *job, size_t first, size_t n, float *out,
-                            struct room *room)
+                            struct scratch *scratch)
 {
     for (int c = 0; c < 3; c++)
-        dot_channel(job, &job->passes[0], c, first, n, room->sum[c], room->part);
-    interleave(room->distant, room, n);
-    keep_above_zero(room->distant, n);
+        dot_channel(job, &job->products[0], c, first, n, scratch->sum[c], scratch->part);
+    interleave(scratch->distant, scratch, n);
+    keep_above_zero(scratch->distant, n);
     for (size_t i = 0; i < 3 * n; i++)
-        out[i] += room->distant[i];
+        out[i] += scratch->distant[i];
 }
 
 // out[n][3]: linear values of the pixels from `first` on.
 static void relight_pixels(const struct job *job, size_t first, size_t n, float *out,
-                           struct room *room)
+                           struct scratch *scratch)
 {
     for (int c = 0; c < 3; c++) {
         if (job->linear)
-            dot_channel(job, &job->passes[0], c, first, n, room->sum[c], room->part);
+            dot_channel(job, &job->products[0], c, first, n, scratch->sum[c], scratch->part);
         else
-            sum_displayed(job, c, first, n, room);
+            sum_displayed(job, c, first, n, scratch);
     }
-    interleave(out, room, n);
+    interleave(out, scratch, n);
     if (job->guard)
         keep_above_zero(out, n);
     if (job->near.count)
-        near_lights_add(&job->near, first, n, out, room->near);
+        near_lights_add(&job->near, first, n, out, scratch->near);
     if (job->distant)
-        relight_distant(job->distant, first, n, out, room);
+        relight_distant(job->distant, first, n, out, scratch);
 }
 
-static struct room *room_of(const struct job *job, int worker)
+static struct scratch *scratch_of(const struct job *job, int worker)
 {
-    return (struct room *)(void *)(job->room + (size_t)worker * job->room_size);
+    return (struct scratch *)(void *)(job->scratch + (size_t)worker * job->scratch_size);
 }
 
 static void relight_chunk(void *context, size_t item, int worker)
 {
     const struct job *job = context;
     const size_t first = item * CHUNK;
-    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3, room_of(job, worker));
+    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3,
+                   scratch_of(job, worker));
 }
 
 static void relight_chunk_rgba8(void *context, size_t item, int worker)
 {
     const struct job *job = context;
     const size_t first = item * CHUNK, n = chunk_size(job, first);
-    struct room *room = room_of(job, worker);
+    struct scratch *scratch = scratch_of(job, worker);
     if (job->words) {
         job->kernels->look_up(job->out_rgba8 + first, n, job->codes->index[0] + first, job->words);
         return;
     }
-    relight_pixels(job, first, n, room->rgb, room);
-    byte_code(job->out_rgba8 + first, room->rgb, n, job->coder);
+    relight_pixels(job, first, n, scratch->rgb, scratch);
+    byte_code(job->out_rgba8 + first, scratch->rgb, n, job->coder);
 }
 
 static bool is_below_horizon(const struct relume_coder_info *info, const struct relume_light *light)
@@ -516,7 +517,7 @@ static relume_status begin_job(struct job *job, const struct relume_codes *codes
     job->guard = job->linear && count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT);
     relume_status status = near || job->guard ? find_grid(job, p, !near) : RELUME_OK;
     if (!status)
-        status = make_passes(job, lights, n);
+        status = make_products(job, lights, n);
     if (!status && job->display)
         curve_init(&job->curve, codes->display);
     if (!status && codes->books)
@@ -526,22 +527,22 @@ static relume_status begin_job(struct job *job, const struct relume_codes *codes
     return status;
 }
 
-static void end_passes(struct job *job)
+static void end_products(struct job *job)
 {
-    for (int i = 0; job->passes && i < job->count; i++) {
-        for (int b = 0; job->passes[i].book && b < job->codes->books; b++)
-            mem_free(job->passes[i].book[b]);
-        mem_free(job->passes[i].book);
-        mem_free(job->passes[i].weights);
+    for (int i = 0; job->products && i < job->count; i++) {
+        for (int b = 0; job->products[i].book && b < job->codes->books; b++)
+            mem_free(job->products[i].book[b]);
+        mem_free(job->products[i].book);
+        mem_free(job->products[i].weights);
     }
-    mem_free(job->passes);
+    mem_free(job->products);
 }
 
 static void end_distant(struct job *job)
 {
     if (!job->distant)
         return;
-    end_passes(job->distant);
+    end_products(job->distant);
     relume_weight_grid_destroy(&job->distant->made);
     mem_free(job->distant);
     job->distant = NULL;
@@ -550,13 +551,13 @@ static void end_distant(struct job *job)
 static void end_job(struct job *job)
 {
     end_distant(job);
-    end_passes(job);
+    end_products(job);
     near_lights_destroy(&job->near);
     relume_weight_grid_destroy(&job->made);
     mem_free(job->lights);
     mem_free(job->coder);
     mem_free(job->words);
-    mem_free(job->room);
+    mem_free(job->scratch);
 }
 
 // What the vectors of a single codebook have of the environments joins their table.
@@ -564,7 +565,7 @@ static void join_single_book(struct job *job)
 {
     const size_t n = 3 * (size_t)job->codes->book_codes[0];
     for (size_t i = 0; i < n; i++)
-        job->passes[0].book[0][i] += job->distant->passes[0].book[0][i];
+        job->products[0].book[0][i] += job->distant->products[0].book[0][i];
     end_distant(job);
 }
 
@@ -616,7 +617,7 @@ static void guard_spread(struct job *job)
 {
     job->guard = true;
     if (job->codes->books == 1)
-        keep_above_zero(job->passes[0].book[0], (size_t)job->codes->book_codes[0]);
+        keep_above_zero(job->products[0].book[0], (size_t)job->codes->book_codes[0]);
 }
 
 static relume_status begin_all(struct job *job, const struct relume_codes *codes,
@@ -642,9 +643,9 @@ static relume_status run_job(struct job *job, int threads, void (*chunk)(void *,
 {
     const size_t pixels = (size_t)job->codes->width * (size_t)job->codes->height;
     const size_t chunks = (pixels + CHUNK - 1) / CHUNK, most = (size_t)thread_count(threads);
-    job->room_size = sizeof(struct room) + near_lights_room(&job->near) * sizeof(float);
-    job->room = mem_array(most < chunks ? most : chunks, job->room_size);
-    if (!job->room)
+    job->scratch_size = sizeof(struct scratch) + near_lights_scratch(&job->near) * sizeof(float);
+    job->scratch = mem_array(most < chunks ? most : chunks, job->scratch_size);
+    if (!job->scratch)
         return RELUME_ENOMEM;
     thread_for(threads, chunks, chunk, job);
     return RELUME_OK;
@@ -696,7 +697,7 @@ static relume_status code_vectors(struct job *job)
     job->words = mem_array(n, sizeof *job->words);
     if (!job->words)
         return RELUME_ENOMEM;
-    byte_code(job->words, job->passes[0].book[0], n, job->coder);
+    byte_code(job->words, job->products[0].book[0], n, job->coder);
     return RELUME_OK;
 }
 
@@ -735,7 +736,7 @@ relume_status relume_relight_book(float *rgb, const struct relume_codes *codes, 
     p.surface = NULL;
     const relume_status status = begin_all(&job, codes, lights, n, &p);
     if (!status)
-        memcpy(rgb, job.passes[0].book[book], 3 * (size_t)codes->book_codes[book] * sizeof *rgb);
+        memcpy(rgb, job.products[0].book[book], 3 * (size_t)codes->book_codes[book] * sizeof *rgb);
     end_job(&job);
     return status;
 }

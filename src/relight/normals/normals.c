@@ -266,7 +266,7 @@ static void fit_row(void *context, size_t item, int worker)
     }
 }
 
-// The rows of a band as codes of their own; `planes` and `indices` are room for their pointers.
+// The rows of a band as codes of their own; `planes` and `indices` hold their pointers.
 static struct relume_codes cut_band(const struct fit *f, const void **planes,
                                     const uint16_t **indices)
 {

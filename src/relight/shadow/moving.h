@@ -122,7 +122,7 @@ relume_status relume_shadows_add_bright_source(struct relume_image *picture, int
                                                const struct relume_light *source, int threads);
 
 // The captured lights around a direction, by which the sums above go: `light` and `weight` have
-// room for all lights of the coder, the first *count are in use; at most 4 of traced shadows, none
+// all lights of the coder, the first *count are in use; at most 4 of traced shadows, none
 // where the direction is a captured light's. `direction` is unit, as relume_coder_clamp gives it;
 // `summed`: for a bright source of an environment. RELUME_ENOMEM.
 relume_status relume_shadows_around(int *light, float *weight, int *count, relume_shadows *shadows,

@@ -310,7 +310,7 @@ struct nearing {
     int patches;                // 0: the light shines from its position
     const relume_coder *coder;  // of the codes
     int lights;                 // that were captured
-    float *room;                // [workers][4][lights]: weights of three colours, what is known
+    float *scratch;             // [workers][4][lights]: weights of three colours, what is known
     bool surround;              // surfaces are all around a lamp
 };
 
@@ -339,15 +339,15 @@ static float know(const struct adding *a, const struct near_pixel *p, int light,
 
 // What the captured lights around a->light show; into `a` and around[AROUND].
 static void know_around(struct adding *a, float around[AROUND], const struct nearing *n,
-                        const struct near_pixel *p, float *room)
+                        const struct near_pixel *p, float *scratch)
 {
-    float constant[3], *known = room + 3 * (size_t)n->lights;
-    relume_coder_weights(a->s->between, a->light, room, constant);
+    float constant[3], *known = scratch + 3 * (size_t)n->lights;
+    relume_coder_weights(a->s->between, a->light, scratch, constant);
     a->around = 0;
     for (int i = 0; i < n->lights && a->around < AROUND; i++)
-        if (room[i] != 0.0f) {
+        if (scratch[i] != 0.0f) {
             around[a->around] = know(a, p, i, known);
-            a->weight[a->around++] = room[i];
+            a->weight[a->around++] = scratch[i];
         }
 }
 
@@ -370,12 +370,12 @@ static float near_share(const struct nearing *n, const struct near_pixel *p, int
 // show there, something out of sight darkened these; of a panorama, whose surfaces are all around a
 // lamp, it stands behind them, and not in the way of the lamp.
 static void add_near_pixel(float *more, const float *relit, struct adding *a,
-                           const struct nearing *n, struct near_pixel *p, float *room)
+                           const struct nearing *n, struct near_pixel *p, float *scratch)
 {
     const float *matte = a->s->matte + MATTE * p->pixel;
     float around[AROUND], between[3] = {0.0f};
     for (int i = 0; i < n->lights; i++)
-        room[3 * n->lights + i] = NAN;
+        scratch[3 * n->lights + i] = NAN;
     for (int k = 0; k < (n->patches ? n->patches : 1); k++) {
         if (!(n->patches ? relume_light_patch_at(&p->towards, a->rgb, &n->patch[k], p->point)
                          : relume_light_at(&p->towards, a->rgb, n->light, p->point)))
@@ -383,7 +383,7 @@ static void add_near_pixel(float *more, const float *relit, struct adding *a,
         const float share = (float)relume_coder_clamp(&a->light, n->coder, p->towards);
         for (int c = 0; c < 3; c++)
             a->rgb[c] *= share;
-        know_around(a, around, n, p, room);
+        know_around(a, around, n, p, scratch);
         p->distance =
             vec3_length(vec3_sub(n->patches ? n->patch[k].position : n->light->position, p->point));
         const float lit = near_share(n, p, k) * shadows_matte(matte, a->light);
@@ -402,7 +402,7 @@ static void add_near_row(void *context, size_t row, int worker)
 {
     const struct nearing *n = context;
     struct adding a = n->all;
-    float *room = n->room + 4 * (size_t)worker * (size_t)n->lights;
+    float *scratch = n->scratch + 4 * (size_t)worker * (size_t)n->lights;
     float *more = a.more->data + 3 * row * (size_t)a.more->width;
     const float *relit = a.relit->data + 3 * row * (size_t)a.more->width;
     for (int i = 0; i < a.rect.width; i++, more += 3, relit += 3) {
@@ -412,7 +412,7 @@ static void add_near_row(void *context, size_t row, int worker)
         if (!is_seen(a.s, p.pixel) || !stage_point(&point, &a.s->stage, p.x + 0.5, p.y + 0.5))
             continue;
         p.point = stage_world(&a.s->stage, point);
-        add_near_pixel(more, relit, &a, n, &p, room);
+        add_near_pixel(more, relit, &a, n, &p, scratch);
     }
 }
 
@@ -429,11 +429,11 @@ static relume_status add_near(const struct adding *a, const struct relume_light 
         relume_light_patches(n.patch, light, MOST_SIDE);
         n.patches = MOST_SIDE * MOST_SIDE;
     }
-    n.room = mem_array((size_t)thread_count(threads) * 4, (size_t)n.lights * sizeof *n.room);
-    if (!n.room)
+    n.scratch = mem_array((size_t)thread_count(threads) * 4, (size_t)n.lights * sizeof *n.scratch);
+    if (!n.scratch)
         return RELUME_ENOMEM;
     thread_for(threads, (size_t)a->rect.height, add_near_row, &n);
-    mem_free(n.room);
+    mem_free(n.scratch);
     return RELUME_OK;
 }
 

@@ -107,8 +107,8 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
 
 // Where the ray passes through a surface between two steps: from before what the camera sees to
 // behind it.
-static bool pass(double *q, const struct around *a, const struct camera *c, double found,
-                 double step)
+static bool find_crossing(double *q, const struct around *a, const struct camera *c, double found,
+                          double step)
 {
     const double from = *q + step, before = disparity_at(a, c, from);
     const double ahead = from - before, behind = found - *q;
@@ -127,7 +127,7 @@ static void add_seen(double sum[2], const struct around *a, const struct camera 
     if (!(c->weight > negligible && found > (double)RELUME_SLAB_BACKGROUND))
         return;
     if (fabs(found - q) > step) {
-        if (!(a->slope > 0.0 && pass(&q, a, c, found, step)))
+        if (!(a->slope > 0.0 && find_crossing(&q, a, c, found, step)))
             return;
         found = q;
     }

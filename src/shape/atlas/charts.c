@@ -1,4 +1,4 @@
-// charts.c - groups of triangles, and room for them in a picture
+// charts.c - groups of triangles, and their positions in a picture
 #include "shape/atlas/charts.h"
 
 #include "core/base/log.h"
@@ -104,7 +104,7 @@ static void group(struct grouping *g)
 }
 
 // Triangles of small groups go over to a larger one beside them, ring by ring, where they face it
-// too. `area` is room for [n].
+// too. `area` holds n.
 static void merge(struct grouping *g, double small, double *area)
 {
     enum { RINGS = 6 };
@@ -180,7 +180,7 @@ void charts_free(struct charts *charts)
     *charts = (struct charts){.of = NULL};
 }
 
-// ---------------------------------------------------------------- room
+// ---------------------------------------------------------------- positions
 
 // A chart in units of the mesh, and where it stands in the picture.
 struct chart {

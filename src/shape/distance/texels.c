@@ -22,7 +22,7 @@ static double turn(vec3 a, vec3 b, vec3 c)
 }
 
 // The convex hull of `n` points of a plane (Andrew 1979), in place of them; how many it has.
-// `hull` has room for n + 1.
+// `hull` holds n + 1.
 static size_t hull_of(vec3 *point, size_t n, vec3 *hull)
 {
     size_t k = 0;

@@ -167,12 +167,12 @@ static relume_status read_format(struct ply *p, const char *line)
                : refuse(p, RELUME_EUNSUPPORTED, "unknown PLY format; expected ascii or binary 1.0");
 }
 
-static bool header_line(struct ply *p, char *line, size_t room)
+static bool header_line(struct ply *p, char *line, size_t capacity)
 {
     const size_t left = (size_t)(p->end - p->at);
     const char *newline = memchr(p->at, '\n', left);
     const size_t length = newline ? (size_t)(newline - p->at) : left;
-    if (!newline || length >= room)
+    if (!newline || length >= capacity)
         return false;
     memcpy(line, p->at, length);
     line[length] = '\0';

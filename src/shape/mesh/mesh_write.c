@@ -25,7 +25,7 @@ void sink_put(struct sink *s, const void *bytes, size_t size)
 {
     const char *from = bytes;
     while (size) {
-        const size_t room = SINK_BYTES - s->filled, part = size < room ? size : room;
+        const size_t left = SINK_BYTES - s->filled, part = size < left ? size : left;
         memcpy(s->buffer + s->filled, from, part);
         s->filled += part;
         from += part;

@@ -37,7 +37,7 @@ struct connect {
 // at equal places.
 relume_status connect_create(struct connect *c, const struct relume_mesh *mesh,
                              uint32_t (*triangle)[3], size_t triangles, const uint32_t *part);
-// Numbers the points of c->vertices vertices into c->point, which has room.
+// Numbers the points of c->vertices vertices into c->point, which holds as many.
 relume_status connect_number(struct connect *c, const struct relume_mesh *mesh);
 // Whether a triangle has three points.
 bool connect_has_area(const struct connect *c, const uint32_t t[3]);
@@ -188,7 +188,7 @@ struct fitted {
     float normal[3];
 };
 struct samples {
-    size_t count, room;
+    size_t count, capacity;
     struct landing *landing;
     size_t own;   // the first ones lie on triangles that change
     double area;  // of all triangles around the target

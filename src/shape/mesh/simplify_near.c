@@ -45,7 +45,7 @@ static void corners(const struct simplify *s, size_t triangle, vec3 p[3])
 }
 
 // Every cell that a triangle may go through, by its box and its plane: counted, or entered where
-// there is room already. The number of all.
+// there is memory already. The number of all.
 static uint64_t enter(const struct simplify *s, struct near_grid *g)
 {
     const double reach = 0.5 * sqrt(3.0) * g->side * (1.0 + 1e-9);

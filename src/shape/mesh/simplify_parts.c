@@ -2,10 +2,10 @@
 //
 // Space is cut into cells; the triangles whose middles lie in a cell are a piece. A point at which
 // pieces meet stays, with all triangles around it, so that what one piece does never tears it from
-// another. Further passes cut elsewhere, and begin with the points that could not go yet: the
+// another. Further rounds cut elsewhere, and begin with the points that could not go yet: the
 // seams. Vertices that have gone stay on the lists of the triangles that they lie on from piece to
 // piece, and the original's triangles near a piece are looked up anew: errors are those of the
-// whole, never of one pass upon another.
+// whole, never of one round upon another.
 //
 // Lists of all triangles and vertices wait in a scratch file; only the pages that a piece touches
 // are in memory.
@@ -79,7 +79,7 @@ static void *take_memory(struct parts *p, size_t count)
     return at;
 }
 
-static relume_status make_room(struct parts *p)
+static relume_status map_parts(struct parts *p)
 {
     const struct relume_mesh *m = p->run->s.mesh;
     const size_t t = m->triangle_count, v = m->vertex_count;
@@ -103,7 +103,7 @@ static relume_status make_room(struct parts *p)
     return RELUME_OK;
 }
 
-static void free_pass(struct parts *p)
+static void free_round(struct parts *p)
 {
     for (int i = 0; p->border && i < p->cells.count; i++)
         mem_free(p->border[i].item);
@@ -125,7 +125,7 @@ static bool add(struct list *l, uint32_t item)
     return true;
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- rounds
 
 static relume_status begin(struct parts *p)
 {
@@ -245,7 +245,7 @@ static void find_boxes(struct parts *p)
     }
 }
 
-static relume_status begin_pass(struct parts *p, size_t most, double share)
+static relume_status begin_round(struct parts *p, size_t most, double share)
 {
     const struct relume_mesh *m = p->run->s.mesh;
     relume_status status = kd_create(&p->cells, &p->run->s, most, share);
@@ -532,10 +532,10 @@ static relume_status run_piece(struct parts *p, int cell, double share)
     return status;
 }
 
-static relume_status run_pass(struct parts *p, size_t most, double cut, double from, double to)
+static relume_status run_round(struct parts *p, size_t most, double cut, double from, double to)
 {
     const size_t target = p->run->target;
-    relume_status status = begin_pass(p, most, cut);
+    relume_status status = begin_round(p, most, cut);
     const double share = target ? fmin((double)target / (double)p->alive, 1.0) : 0.0;
     for (int cell = 0; cell < p->cells.count && !status && p->alive > target; cell++) {
         const double each = (to - from) / p->cells.count;
@@ -546,7 +546,7 @@ static relume_status run_pass(struct parts *p, size_t most, double cut, double f
         else if (has_work(p, cell))
             status = run_piece(p, cell, share);
     }
-    free_pass(p);
+    free_round(p);
     return status;
 }
 
@@ -558,7 +558,7 @@ static relume_status run_rest(struct parts *p)
     for (size_t i = 0; i < p->points; i++)
         p->waits[i] = 1;
     const size_t all = p->run->s.mesh->triangle_count;
-    return run_pass(p, p->alive <= p->capacity ? all : p->capacity, cut_at[0], 0.9, 1.0);
+    return run_round(p, p->alive <= p->capacity ? all : p->capacity, cut_at[0], 0.9, 1.0);
 }
 
 static relume_status run_all(struct parts *p)
@@ -566,7 +566,7 @@ static relume_status run_all(struct parts *p)
     relume_status status = begin(p);
     rest(p);
     for (int i = 0; i < PASSES && !status; i++)
-        status = run_pass(p, p->capacity, cut_at[i], i ? 0.7 + 0.1 * (i - 1) : 0.0, 0.7 + 0.1 * i);
+        status = run_round(p, p->capacity, cut_at[i], i ? 0.7 + 0.1 * (i - 1) : 0.0, 0.7 + 0.1 * i);
     if (!status && p->alive > p->run->target && p->run->target)
         status = run_rest(p);
     return status;
@@ -590,7 +590,7 @@ relume_status run_in_parts(struct relume_mesh *out, struct run *r, size_t memory
     log_line(log, RELUME_NOTE,
              "the mesh is simplified in parts of about %zu triangles, for want of memory",
              p.capacity);
-    relume_status status = make_room(&p);
+    relume_status status = map_parts(&p);
     if (!status)
         status = run_all(&p);
     if (!status) {

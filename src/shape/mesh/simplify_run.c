@@ -212,8 +212,8 @@ struct choice {
     double cost;
 };
 
-// Neighbours that the point of r->fan may go to, the cheapest first, at most `room`.
-static int find_choices(struct run *r, uint32_t point, struct choice *choice, int room)
+// Neighbours that the point of r->fan may go to, the cheapest first, at most `most`.
+static int find_choices(struct run *r, uint32_t point, struct choice *choice, int most)
 {
     struct moves moves;
     int n = 0;
@@ -222,11 +222,11 @@ static int find_choices(struct run *r, uint32_t point, struct choice *choice, in
             !connect_moves(&r->s.connect, point, &r->fan, r->fan.neighbour[i], &moves))
             continue;
         const double cost = quadrics_error(&r->s, point, &moves);
-        int at = n < room ? n++ : room;
+        int at = n < most ? n++ : most;
         for (; at > 0 && cost < choice[at - 1].cost; at--)
-            if (at < room)
+            if (at < most)
                 choice[at] = choice[at - 1];
-        if (at < room)
+        if (at < most)
             choice[at] = (struct choice){i, cost};
     }
     return n;

@@ -191,13 +191,13 @@ static double colour_distance(const struct simplify *s, uint32_t vertex, const s
 
 static bool land(struct samples *to, uint32_t vertex, const struct facet *f, const double w[3])
 {
-    if (to->count == to->room) {
-        const size_t room = to->room ? 2 * to->room : 64;
-        struct landing *more = mem_resize(to->landing, room, sizeof *more);
+    if (to->count == to->capacity) {
+        const size_t capacity = to->capacity ? 2 * to->capacity : 64;
+        struct landing *more = mem_resize(to->landing, capacity, sizeof *more);
         if (!more)
             return false;
         to->landing = more;
-        to->room = room;
+        to->capacity = capacity;
     }
     struct landing *l = &to->landing[to->count++];
     *l = (struct landing){.vertex = vertex, .triangle = f->triangle};

@@ -130,14 +130,14 @@ relume_status tangents_make(struct tangents *out, const struct mesh *mesh, float
         .triangles = mem_array(mesh->triangle_count, sizeof *out->triangles),
     };
     vec3 *sum = mem_zeroed(corners, sizeof *sum);
-    const bool room = corner && out->vertices && out->triangles && sum && (out->tint || !tint);
-    if (room) {
+    const bool allocated = corner && out->vertices && out->triangles && sum && (out->tint || !tint);
+    if (allocated) {
         fill_corners(corner, mesh, tint);
         qsort(corner, corners, sizeof *corner, by_key);
         join(out, corner, corners);
         add_tangents(sum, out, mesh);
     }
-    for (size_t i = 0; room && i < out->vertex_count; i++) {
+    for (size_t i = 0; allocated && i < out->vertex_count; i++) {
         struct relume_mesh_vertex *v = &out->vertices[i];
         const bool flat = !(vec3_length(sum[i]) > 1e-12);
         const vec3 t = flat ? across(normal_of(v)) : vec3_unit(off_normal(sum[i], normal_of(v)));
@@ -146,5 +146,5 @@ relume_status tangents_make(struct tangents *out, const struct mesh *mesh, float
     }
     mem_free(corner);
     mem_free(sum);
-    return room ? RELUME_OK : RELUME_ENOMEM;
+    return allocated ? RELUME_OK : RELUME_ENOMEM;
 }

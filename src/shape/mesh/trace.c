@@ -44,8 +44,8 @@ static void share(RTCGeometry g, enum RTCBufferType type, enum RTCFormat format,
     rtcSetSharedGeometryBuffer(g, type, 0, format, data, 0, stride, count);
 }
 
-// As `pass` below has it; directions are in rows 4 to 6 of the ray.
-static void pass_holes(const struct RTCFilterFunctionNArguments *args)
+// As `let_through` below has it; directions are in rows 4 to 6 of the ray.
+static void let_through_holes(const struct RTCFilterFunctionNArguments *args)
 {
     const struct base *const b = args->geometryUserPtr;
     const struct query *const q = (const struct query *)args->context;
@@ -55,8 +55,8 @@ static void pass_holes(const struct RTCFilterFunctionNArguments *args)
     for (size_t i = 0; i < n; i++) {
         const float direction[3] = {ray[4 * n + i], ray[5 * n + i], ray[6 * n + i]};
         if (args->valid[i] &&
-            b->holes->pass(b->holes->context, (uint32_t)b->first + numbers[5 * n + i],
-                           hit[3 * n + i], hit[4 * n + i], direction, q->layers))
+            b->holes->let_through(b->holes->context, (uint32_t)b->first + numbers[5 * n + i],
+                                  hit[3 * n + i], hit[4 * n + i], direction, q->layers))
             args->valid[i] = 0;
     }
 }
@@ -72,11 +72,11 @@ static void add_triangles(tracer *t, const struct mesh *mesh, size_t first, size
     share(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles + first,
           sizeof *mesh->triangles, count);
     struct base *base = &t->base[rtcAttachGeometry(t->scene, g)];
-    *base = (struct base){first, NULL, t->holes.pass ? &t->holes : NULL};
+    *base = (struct base){first, NULL, t->holes.let_through ? &t->holes : NULL};
     if (base->holes) {
         rtcSetGeometryUserData(g, base);
-        rtcSetGeometryIntersectFilterFunction(g, pass_holes);
-        rtcSetGeometryOccludedFilterFunction(g, pass_holes);
+        rtcSetGeometryIntersectFilterFunction(g, let_through_holes);
+        rtcSetGeometryOccludedFilterFunction(g, let_through_holes);
     }
     rtcCommitGeometry(g);
     rtcReleaseGeometry(g);
@@ -94,7 +94,7 @@ static const struct relume_billboard_texel *texel_at(const struct relume_billboa
 // Rays pass through what is mostly empty, and through planes that they begin on. Of N rays Embree
 // gives each number in a row of N: places in rows 0 to 2, what they hit by u, v and number in rows
 // 3 to 5.
-static void pass(const struct RTCFilterFunctionNArguments *args)
+static void let_through(const struct RTCFilterFunctionNArguments *args)
 {
     const struct trace_cloud *const c = args->geometryUserPtr;
     const float *const ray = (const void *)args->ray, *const hit = (const void *)args->hit;
@@ -132,8 +132,8 @@ static bool add_cloud(tracer *t, const struct trace_cloud *c)
         number[i] = (unsigned)i;
     }
     rtcSetGeometryUserData(g, (void *)c);
-    rtcSetGeometryIntersectFilterFunction(g, pass);
-    rtcSetGeometryOccludedFilterFunction(g, pass);
+    rtcSetGeometryIntersectFilterFunction(g, let_through);
+    rtcSetGeometryOccludedFilterFunction(g, let_through);
     rtcCommitGeometry(g);
     t->base[rtcAttachGeometry(t->scene, g)] = (struct base){c->first, c, NULL};
     rtcReleaseGeometry(g);
@@ -262,9 +262,11 @@ bool trace_layer(const tracer *t, const float origin[3], const float direction[3
     return closest(t, origin, direction, true, hit);
 }
 
-bool trace_passes(const tracer *t, uint32_t triangle, float u, float v, const float direction[3])
+bool trace_lets_through(const tracer *t, uint32_t triangle, float u, float v,
+                        const float direction[3])
 {
-    return t->holes.pass && t->holes.pass(t->holes.context, triangle, u, v, direction, false);
+    return t->holes.let_through &&
+           t->holes.let_through(t->holes.context, triangle, u, v, direction, false);
 }
 
 enum { PACKET = 16 };

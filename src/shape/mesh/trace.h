@@ -26,8 +26,8 @@ void trace_destroy(tracer **t);
 // Places that rays pass through: of triangle (u, v), for a ray in `direction` (unit); `layers`: for
 // trace_layer.
 struct trace_holes {
-    bool (*pass)(const void *context, uint32_t triangle, float u, float v, const float direction[3],
-                 bool layers);
+    bool (*let_through)(const void *context, uint32_t triangle, float u, float v,
+                        const float direction[3], bool layers);
     const void *context;
 };
 
@@ -49,8 +49,9 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
 // The same of all that is there in part, for who puts layers one over the other.
 bool trace_layer(const tracer *t, const float origin[3], const float direction[3],
                  struct trace_hit *hit);
-// Whether a ray passes there.
-bool trace_passes(const tracer *t, uint32_t triangle, float u, float v, const float direction[3]);
+// Whether a ray goes through there.
+bool trace_lets_through(const tracer *t, uint32_t triangle, float u, float v,
+                        const float direction[3]);
 
 // Whether each of `count` origins sees infinitely far along `direction`.
 void trace_unblocked(const tracer *t, float (*origins)[3], int count, const float direction[3],

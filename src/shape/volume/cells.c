@@ -266,7 +266,7 @@ static relume_status put(struct relume_mesh *out, struct cell_rows *k)
         return RELUME_ENOMEM;
     out->vertex_count = vertices;
     out->triangle_count = triangles;
-    if (!signs_pass(k->g, (size_t)k->g->size[2] - 1, put_layer, k, 0.4, 0.8))
+    if (!signs_round(k->g, (size_t)k->g->size[2] - 1, put_layer, k, 0.4, 0.8))
         return RELUME_ECANCEL;
     numbering_put(&k->vertices, k->g, out);
     return RELUME_OK;
@@ -289,7 +289,7 @@ static relume_status mesh_of(struct relume_mesh *out, struct relume_isosurface_r
     const size_t layers = (size_t)k->g->size[2] - 1;
     for (int corners = 0; corners < 256; corners++)
         cut_cell(&k->table[corners], corners, 0);
-    if (!signs_pass(k->g, layers, count_layer, k, 0.0, 0.4))
+    if (!signs_round(k->g, layers, count_layer, k, 0.0, 0.4))
         return RELUME_ECANCEL;
     report->ambiguous = sum_up(k->ambiguous, layers);
     report->boxes = sum_up(k->cells, layers);

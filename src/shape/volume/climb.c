@@ -1,6 +1,6 @@
 // climb.c - the surface through boxes of a grid: adaptive skeleton climbing
 //
-// Two passes over blocks, in layers: their boxes first, then, since neighbours know theirs, loops
+// Two rounds over blocks, in layers: their boxes first, then, since neighbours know theirs, loops
 // and triangles. Vertices are named by their edge until all are known, then numbered in order.
 #include "shape/volume/climb.h"
 
@@ -18,7 +18,7 @@ struct layer {
     box_owner *owners;
     size_t owned;  // blocks that have them
     uint64_t (*triangle)[3];
-    size_t triangles, room;
+    size_t triangles, capacity;
     size_t boxes, ambiguous;
     bool failed;
 };
@@ -53,12 +53,12 @@ static int32_t *state_at(const struct climb *k, int x, int y, int z)
            (size_t)x;
 }
 
-// ---------------------------------------------------------------- first pass: boxes
+// ---------------------------------------------------------------- first round: boxes
 
 static bool keep_owners(struct climb *k, struct layer *l, const struct block *b)
 {
     const size_t bytes = block_bytes(k);
-    if (!(l->owned & (l->owned - 1))) {  // room for the next power of two
+    if (!(l->owned & (l->owned - 1))) {  // grows to the next power of two
         box_owner *more = mem_resize(l->owners, l->owned ? 2 * l->owned : 1, bytes);
         if (!more)
             return false;
@@ -127,7 +127,7 @@ static void climb_layer(void *context, size_t z, int worker)
     }
 }
 
-// ---------------------------------------------------------------- second pass: triangles
+// ---------------------------------------------------------------- second round: triangles
 
 static struct neighbours neighbours_of(const struct climb *k, const int at[3])
 {
@@ -145,16 +145,16 @@ static struct neighbours neighbours_of(const struct climb *k, const int at[3])
     return n;
 }
 
-static bool make_room(struct layer *l, size_t more)
+static bool grow_layer(struct layer *l, size_t more)
 {
-    if (l->triangles + more <= l->room)
+    if (l->triangles + more <= l->capacity)
         return true;
-    const size_t room = 2 * l->room + more + 256;
-    uint64_t(*grown)[3] = mem_resize(l->triangle, room, sizeof *grown);
+    const size_t capacity = 2 * l->capacity + more + 256;
+    uint64_t(*grown)[3] = mem_resize(l->triangle, capacity, sizeof *grown);
     if (!grown)
         return false;
     l->triangle = grown;
-    l->room = room;
+    l->capacity = capacity;
     return true;
 }
 
@@ -171,7 +171,7 @@ static void put_box(struct climb *k, struct layer *l, struct faces *f)
     l->boxes += f->touched > 0;
     while (faces_loop(f)) {
         const size_t more = (size_t)f->loop.count - 2;
-        l->failed = l->failed || !make_room(l, more);
+        l->failed = l->failed || !grow_layer(l, more);
         for (int i = 0; i < f->loop.count; i++)
             mark(k, f->loop.key[i]);
         if (l->failed)
@@ -293,14 +293,14 @@ static relume_status climb_volume(struct relume_mesh *out, struct relume_isosurf
                                   struct climb *k)
 {
     const struct signs *g = k->g;
-    if (!signs_pass(g, (size_t)k->blocks[2], climb_layer, k, 0.0, 0.6))
+    if (!signs_round(g, (size_t)k->blocks[2], climb_layer, k, 0.0, 0.6))
         return RELUME_ECANCEL;
     for (int z = 0; z < k->blocks[2]; z++)
         if (k->layer[z].failed)
             return RELUME_ENOMEM;
     for (int i = 0; i < g->threads; i++)
         faces_begin(&k->worker[i].faces, g, k->share);
-    if (!signs_pass(g, (size_t)k->blocks[2], put_layer, k, 0.6, 0.9))
+    if (!signs_round(g, (size_t)k->blocks[2], put_layer, k, 0.6, 0.9))
         return RELUME_ECANCEL;
     return finish(out, report, k);
 }

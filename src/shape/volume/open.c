@@ -78,7 +78,7 @@ relume_status volume_take(struct store *s, unpack *from, const int64_t size[3], 
     if (exact)
         status = check_exact(s, from, size, bytes);
     if (!status)
-        status = unpack_expect(from, bytes, expected);  // before there is room for them
+        status = unpack_expect(from, bytes, expected);  // before there is memory for them
     if (!status)
         status = store_begin(s, size, p);
     return status ? status : take_rows(s, from, expected, exact);

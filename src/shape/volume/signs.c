@@ -93,9 +93,9 @@ relume_status signs_create(struct signs *g, const relume_volume *volume, float t
     return RELUME_OK;
 }
 
-bool signs_pass(const struct signs *g, size_t layers,
-                void (*body)(void *context, size_t item, int worker), void *context, double from,
-                double to)
+bool signs_round(const struct signs *g, size_t layers,
+                 void (*body)(void *context, size_t item, int worker), void *context, double from,
+                 double to)
 {
     struct thread_told told = g->told;
     const double all = told.to - told.from;

@@ -19,10 +19,10 @@ struct signs {
     struct thread_told told;  // of the mesh that is made
 };
 
-// All layers of a pass, which is that share of a mesh; false: somebody asked to stop.
-bool signs_pass(const struct signs *g, size_t layers,
-                void (*body)(void *context, size_t item, int worker), void *context, double from,
-                double to);
+// All layers of a round, which is that share of a mesh; false: somebody asked to stop.
+bool signs_round(const struct signs *g, size_t layers,
+                 void (*body)(void *context, size_t item, int worker), void *context, double from,
+                 double to);
 
 // RELUME_ENOMEM.
 relume_status signs_create(struct signs *g, const relume_volume *volume, float threshold,

@@ -70,7 +70,7 @@ relume_status store_check(const struct store *s, const int64_t size[3])
 }
 
 // Memory up to 1 GiB, a file without a name beyond, which is not held against --max-memory.
-static relume_status make_room(struct store *s, const struct relume_volume_params *p)
+static relume_status map_samples(struct store *s, const struct relume_volume_params *p)
 {
     relume_volume *v = s->volume;
     const size_t bytes = samples_of(v) * bytes_of(v->type), most = (size_t)1 << 30;
@@ -105,7 +105,7 @@ relume_status store_begin(struct store *s, const int64_t size[3],
         v->spacing[c] = p->spacing[c] > 0.0 ? p->spacing[c] : 1.0;
     }
     s->filled = 0;
-    return make_room(s, p);
+    return map_samples(s, p);
 }
 
 relume_status volume_create(relume_volume **out, const int size[3], const char *type,

@@ -51,16 +51,16 @@ static void put_word(uint8_t *to, size_t v)
         to[i] = (uint8_t)(v >> (8 * i));
 }
 
-// One sheet of a tile; its planes are copied into `room`.
+// One sheet of a tile; its planes are copied into `scratch`.
 static struct sheet cut(const struct levels_writer *w, const struct tile *tile, int first,
-                        float *room)
+                        float *scratch)
 {
     struct sheet s = {.width = tile->at.width,
                       .height = tile->at.height,
                       .planes = smaller_of(w->how->planes - first, SHEET_PLANES),
                       .own = w->how->guided};
     for (int p = 0; p < s.planes; p++) {
-        float *to = room + (size_t)p * pixels_of(tile);
+        float *to = scratch + (size_t)p * pixels_of(tile);
         tile_copy(to, tile, first + p);
         s.plane[p] = to;
         s.minimum[p] = w->how->minimum[first + p];
@@ -116,15 +116,15 @@ static void say_scales(const struct levels *how, int first, const struct sheet_r
 
 // The first plane of the first sheet becomes that of the guide; the gain of each pixel is what
 // readers will make of it.
-static relume_status find_gain(float *gain, const struct sheet *s, float *room, double step)
+static relume_status find_gain(float *gain, const struct sheet *s, float *scratch, double step)
 {
     const size_t n = (size_t)s->width * (size_t)s->height;
     struct sheet alone = *s;  // with the ranges of all three, which its codes depend on
     struct sheet_result coded;
     struct jpeg_codes decoded = {0};
     for (size_t i = 0; i < n; i++)
-        room[i] = guide_root(room[i]);
-    alone.plane[1] = alone.plane[2] = room;
+        scratch[i] = guide_root(scratch[i]);
+    alone.plane[1] = alone.plane[2] = scratch;
     relume_status status = sheet_encode(&coded, &alone, step);
     if (!status)
         status = jpeg_decode(&decoded, coded.bytes, coded.size, "tile", NULL, NULL);
@@ -136,13 +136,13 @@ static relume_status find_gain(float *gain, const struct sheet *s, float *room, 
 }
 
 // What is coded of the planes of a sheet that have a guide; `gain` is found from the first sheet.
-static relume_status follow_guide(const struct sheet *s, float *room, float *gain, bool first,
+static relume_status follow_guide(const struct sheet *s, float *scratch, float *gain, bool first,
                                   double step)
 {
     const size_t n = (size_t)s->width * (size_t)s->height;
-    const relume_status status = first ? find_gain(gain, s, room, step) : RELUME_OK;
+    const relume_status status = first ? find_gain(gain, s, scratch, step) : RELUME_OK;
     for (size_t i = first ? n : 0; !status && i < (size_t)s->planes * n; i++)
-        room[i] /= gain[i % n];
+        scratch[i] /= gain[i % n];
     return status;
 }
 
@@ -160,19 +160,19 @@ static relume_status keep_smaller(struct sheet_result *avif, const struct sheet_
 // The sheets of a tile again, as AVIF. The guide of the later ones is what that makes of the first.
 static relume_status encode_avif(struct tile_file *out, const struct levels_writer *w,
                                  const struct tile *tile, const struct sheet_result *jpeg,
-                                 float *room)
+                                 float *scratch)
 {
     const int sheets = sheets_of(w);
     const size_t n = pixels_of(tile);
     struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
     uint8_t *codes = mem_array(SHEET_PLANES * n, 1);
-    float *gain = room + SHEET_PLANES * n;
+    float *gain = scratch + SHEET_PLANES * n;
     int quantiser = FIRST_QUANTISER;
     relume_status status = result && codes ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < sheets; i++) {
-        const struct sheet s = cut(w, tile, SHEET_PLANES * i, room);
+        const struct sheet s = cut(w, tile, SHEET_PLANES * i, scratch);
         if (w->how->guided)
-            status = follow_guide(&s, room, gain, i == 0, w->how->step);
+            status = follow_guide(&s, scratch, gain, i == 0, w->how->step);
         if (!status)
             status = avif_encode(&result[i], codes, &s, &jpeg[i], &quantiser, w->log);
         const bool taken = !status && result[i].size < jpeg[i].size;
@@ -191,14 +191,14 @@ static relume_status encode_avif(struct tile_file *out, const struct levels_writ
 }
 
 static relume_status encode_jpeg(struct sheet_result *result, const struct levels_writer *w,
-                                 const struct tile *tile, float *room)
+                                 const struct tile *tile, float *scratch)
 {
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < sheets_of(w); i++) {
-        const struct sheet s = cut(w, tile, SHEET_PLANES * i, room);
+        const struct sheet s = cut(w, tile, SHEET_PLANES * i, scratch);
         if (w->how->guided)
-            status =
-                follow_guide(&s, room, room + SHEET_PLANES * pixels_of(tile), i == 0, w->how->step);
+            status = follow_guide(&s, scratch, scratch + SHEET_PLANES * pixels_of(tile), i == 0,
+                                  w->how->step);
         if (!status)
             status = sheet_encode(&result[i], &s, w->how->step);
         if (!status && w->codes && !tile->level->number)
@@ -214,18 +214,19 @@ static relume_status encode_tile(void *user, const struct tile *tile, struct til
     const struct levels_writer *w = user;
     const int sheets = sheets_of(w);
     struct sheet_result *result = mem_zeroed((size_t)sheets, sizeof *result);
-    float *room = mem_array((SHEET_PLANES + 1) * pixels_of(tile), sizeof *room);
+    float *scratch = mem_array((SHEET_PLANES + 1) * pixels_of(tile), sizeof *scratch);
     const bool has_jpeg = !w->site || w->how->layers != RELUME_PUBLISH_AVIF;
     const bool has_avif = w->site && w->how->layers != RELUME_PUBLISH_JPEG;
-    relume_status status = result && room ? encode_jpeg(result, w, tile, room) : RELUME_ENOMEM;
+    relume_status status =
+        result && scratch ? encode_jpeg(result, w, tile, scratch) : RELUME_ENOMEM;
     if (!status && has_jpeg)
         status = levels_join(result, sheets, &files[FILE_JPEG].bytes, &files[FILE_JPEG].size);
     if (!status && has_avif)
-        status = encode_avif(&files[FILE_AVIF], w, tile, result, room);
+        status = encode_avif(&files[FILE_AVIF], w, tile, result, scratch);
     for (int i = 0; result && i < sheets; i++)
         mem_free(result[i].bytes);
     mem_free(result);
-    mem_free(room);
+    mem_free(scratch);
     return status;
 }
 

@@ -35,7 +35,7 @@ static relume_status spread(struct relume_image *image, unsigned char *known)
     const int width = image->width, height = image->height;
     const size_t n = (size_t)width * (size_t)height;
     unsigned char *before = mem_array(n, 1);
-    for (int pass = 0; before && pass < SPREAD; pass++) {
+    for (int step = 0; before && step < SPREAD; step++) {
         memcpy(before, known, n);
         for (size_t i = 0; i < n; i++) {
             const int x = (int)(i % (size_t)width), y = (int)(i / (size_t)width);
@@ -116,12 +116,12 @@ static relume_status fill(struct relume_mesh *m, const relume_baked *b)
     m->normal = mem_array(corners, sizeof *m->normal);
     m->texture = mem_array(corners, sizeof *m->texture);
     m->triangle = mem_array(b->info.triangles, sizeof *m->triangle);
-    const bool room = all && m->position && m->normal && m->texture && m->triangle;
-    for (size_t i = 0; room && i < corners; i++)
+    const bool allocated = all && m->position && m->normal && m->texture && m->triangle;
+    for (size_t i = 0; allocated && i < corners; i++)
         all[i] = (struct numbered){b->triangle[i / 3][i % 3], i};
-    if (room)
+    if (allocated)
         qsort(all, corners, sizeof *all, compare);
-    for (size_t i = 0; room && i < corners; i++) {
+    for (size_t i = 0; allocated && i < corners; i++) {
         const struct atlas_corner *c = &all[i].corner;
         if (!i || compare(&all[i], &all[i - 1])) {
             const size_t at = m->vertex_count++;
@@ -134,7 +134,7 @@ static relume_status fill(struct relume_mesh *m, const relume_baked *b)
     }
     m->triangle_count = b->info.triangles;
     mem_free(all);
-    return room ? RELUME_OK : RELUME_ENOMEM;
+    return allocated ? RELUME_OK : RELUME_ENOMEM;
 }
 
 relume_status model_write(const struct site *site, const struct page *page, const relume_baked *b)

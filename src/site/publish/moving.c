@@ -54,19 +54,19 @@ static relume_status encode(struct moving *m, struct sheet_result *sheets,
                             const struct relume_image *model, bool gloss)
 {
     const size_t n = (size_t)model->width * (size_t)model->height;
-    float *room = mem_array(SHEET_PLANES * n, sizeof *room);
-    relume_status status = room ? RELUME_OK : RELUME_ENOMEM;
+    float *scratch = mem_array(SHEET_PLANES * n, sizeof *scratch);
+    relume_status status = scratch ? RELUME_OK : RELUME_ENOMEM;
     for (int first = 0; !status && first < MOVING_NUMBERS; first += SHEET_PLANES) {
         struct sheet s = {.width = model->width, .height = model->height, .fixed = true};
         for (; s.planes < SHEET_PLANES && first + s.planes < MOVING_NUMBERS; s.planes++) {
-            float *to = room + (size_t)s.planes * n;
+            float *to = scratch + (size_t)s.planes * n;
             code_plane(m, to, model, first + s.planes, gloss);
             s.plane[s.planes] = to;
             s.maximum[s.planes] = s.weight[s.planes] = 1.0;
         }
         status = sheet_encode(&sheets[first / SHEET_PLANES], &s, STEP / 255.0);
     }
-    mem_free(room);
+    mem_free(scratch);
     return status;
 }
 

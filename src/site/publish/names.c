@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Room for "-255" behind it.
+// Space for "-255" behind it.
 enum { LONGEST = 48 };
 
 char *names_stem(const char *path)

@@ -158,7 +158,7 @@ static void fill_frames(struct arrays *a, const relume_baked *b)
 
 // ---------------------------------------------------------------- object.bin
 
-// Room for an array behind the others, or its size alone while there is no memory.
+// Memory for an array behind the others, or its size alone while there is no memory.
 static void *take_array(char *memory, size_t *used, size_t count, size_t bytes)
 {
     char *at = memory ? memory + *used : NULL;

@@ -18,7 +18,7 @@ relume_status picture_lit(struct relume_image *out, relume_pack *pack, int side,
 // A rectangle of a linear picture as a JPEG of the site, coded as sRGB.
 relume_status picture_save_jpeg(const struct site *site, const char *name,
                                 const struct relume_image *picture, const struct relume_rect *at);
-// Bytes of 1 or 3 channels as PNG, with its twin.
+// Bytes of 1 or 3 channels as PNG, with its script copy.
 relume_status picture_save_png(const struct site *site, const char *name, int width, int height,
                                int channels, const uint8_t *samples);
 

@@ -13,7 +13,7 @@
 #include "site/publish/object.h"
 #include "site/publish/page.h"
 #include "site/publish/picture.h"
-#include "site/publish/scene.h"
+#include "site/publish/published.h"
 
 #include <relume/exchange.h>
 #include <relume/world/bake.h>
@@ -62,15 +62,15 @@ static void work_end(struct site_build *w)
 
 // ---------------------------------------------------------------- one file
 
-static relume_status write_poster(const struct scene *s, struct page *page)
+static relume_status write_poster(const struct published *f, struct page *page)
 {
     struct relume_image still = {0};
     char name[128];
-    snprintf(name, sizeof name, "%s/poster.jpg", s->name);
-    relume_status status = picture_still(&still, s->pack, POSTER_SIDE, true, s->site);
+    snprintf(name, sizeof name, "%s/poster.jpg", f->name);
+    relume_status status = picture_still(&still, f->pack, POSTER_SIDE, true, f->site);
     const struct relume_rect all = {0, 0, still.width, still.height};
     if (!status)
-        status = picture_save_jpeg(s->site, name, &still, &all);
+        status = picture_save_jpeg(f->site, name, &still, &all);
     page->poster_width = still.width;
     page->poster_height = still.height;
     relume_image_destroy(&still);
@@ -92,25 +92,25 @@ static relume_status open_file(relume_pack **pack, const char *path,
     return status;
 }
 
-static relume_status write_all(struct scene *s, struct page *page, const char *path,
+static relume_status write_all(struct published *f, struct page *page, const char *path,
                                const char *site_title)
 {
     relume_notes *notes = NULL;
-    relume_status status = annotations_open(&notes, s->site, path, s->pack);
-    s->notes = !status && relume_notes_count(notes) > 0;
-    s->mm_per_pixel = s->site->params->mm_per_pixel > 0.0 ? s->site->params->mm_per_pixel
+    relume_status status = annotations_open(&notes, f->site, path, f->pack);
+    f->notes = !status && relume_notes_count(notes) > 0;
+    f->mm_per_pixel = f->site->params->mm_per_pixel > 0.0 ? f->site->params->mm_per_pixel
                       : status                            ? 0.0
                                                           : relume_notes_scale(notes);
     if (!status)
-        status = scene_write(s);
+        status = published_write(f);
     if (!status)
-        status = write_poster(s, page);
+        status = write_poster(f, page);
     if (!status)
-        status = iiif_write(s->site, page, s->pack, s->notes);
-    if (!status && s->notes)
-        status = annotations_write(s->site, notes, path, relume_pack_info(s->pack)->notes, page);
+        status = iiif_write(f->site, page, f->pack, f->notes);
+    if (!status && f->notes)
+        status = annotations_write(f->site, notes, path, relume_pack_info(f->pack)->notes, page);
     if (!status)
-        status = page_write(s->site, page, site_title);
+        status = page_write(f->site, page, site_title);
     relume_notes_destroy(&notes);
     return status;
 }
@@ -137,20 +137,20 @@ static relume_status publish_file(struct site_build *w, int i, const struct site
     *page = (struct page){.name = w->names[i],
                           .details =
                               details_of_file(w->metadata, w->params, w->stems[i], w->count == 1)};
-    struct scene s = {
+    struct published f = {
         .site = &here, .name = w->names[i], .details = page->details, .report = &report};
     memcpy(report.name, w->names[i], sizeof report.name);
     const char *site_title = details_of_site(w->metadata, w->params).title;
     page->object = relume_kind_of(w->files[i]) == RELUME_KIND_BAKED;
     relume_status status = page->object ? object_write(&here, page, w->files[i], &report)
-                                        : open_file(&s.pack, w->files[i], w->params);
+                                        : open_file(&f.pack, w->files[i], w->params);
     if (!status && page->object) {
         status = page_write(&here, page, site_title);
     } else if (!status) {
-        report.views = relume_pack_info(s.pack)->views;
-        status = write_all(&s, page, w->files[i], site_title);
+        report.views = relume_pack_info(f.pack)->views;
+        status = write_all(&f, page, w->files[i], site_title);
     }
-    scene_free(&s);
+    published_free(&f);
     report.advice = advise(&report, w->params);
     if (w->reports)
         w->reports[i] = report;

@@ -34,21 +34,21 @@ relume_status site_save(const struct site *site, const char *name, const void *b
     return status;
 }
 
-static relume_status save_twin(const struct site *site, const char *name, const void *bytes,
+static relume_status save_copy(const struct site *site, const char *name, const void *bytes,
                                size_t size)
 {
     struct text t;
-    char *twin = mem_format("%s.js", name);
-    relume_status status = twin ? text_open(&t) : RELUME_ENOMEM;
+    char *copy = mem_format("%s.js", name);
+    relume_status status = copy ? text_open(&t) : RELUME_ENOMEM;
     if (!status) {
         fputs("relume.put(", t.file);
         text_put(&(struct jwriter){.file = t.file, .style = JSON_MARKUP}, NULL, name);
         fputs(", \"", t.file);
         base64_print(t.file, bytes, size);
         fputs("\");\n", t.file);
-        status = site_save_text(site, twin, false, &t);
+        status = site_save_text(site, copy, false, &t);
     }
-    mem_free(twin);
+    mem_free(copy);
     return status;
 }
 
@@ -59,7 +59,7 @@ relume_status site_save_data(const struct site *site, const char *name, const vo
     if (site->params->target != RELUME_PUBLISH_DISK)
         status = site_save(site, name, bytes, size);
     if (!status && site->params->target != RELUME_PUBLISH_WEB)
-        status = save_twin(site, name, bytes, size);
+        status = save_copy(site, name, bytes, size);
     return status;
 }
 

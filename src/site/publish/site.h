@@ -14,7 +14,7 @@ struct site {
 
 // A file by its name below the site, in folders that are made where they are not there.
 relume_status site_save(const struct site *site, const char *name, const void *bytes, size_t size);
-// The same of what the page's script reads: with its twin NAME.js, as the target asks.
+// The same of what the page's script reads: with its script copy NAME.js, as the target asks.
 relume_status site_save_data(const struct site *site, const char *name, const void *bytes,
                              size_t size);
 // Either of a text that is closed here, and freed.

@@ -44,7 +44,7 @@ struct relume_baked {
     uint16_t *place;  // [vectors][kept]: of a cube, which weight a value belongs to; else NULL
     float *value;     // [vectors][kept][3]
 };
-// Room for all arrays once the numbers of `info`, the basis and `kept` are set; without limits
+// Memory for all arrays once the numbers of `info`, the basis and `kept` are set; without limits
 // those of the log's context. RELUME_ENOMEM, RELUME_ELIMIT with a sentence.
 relume_status baked_make(relume_baked *b, const struct relume_limits *limits,
                          const struct relume_log *log);

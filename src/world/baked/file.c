@@ -127,7 +127,7 @@ static bool set_places(const relume_baked *b, int x, int y, int c, float value)
 
 static bool set_mesh(const relume_baked *b, int x, int y, int c, float value)
 {
-    const float MOST = 1e15f;  // squares of lengths still have room
+    const float MOST = 1e15f;  // squares of lengths still are finite
     struct atlas_corner *corner = corner_at(b, x, y);
     if (corner)
         *mesh_value(corner, c) = value;

@@ -583,8 +583,8 @@ static size_t count_part(const relume_objects *to, const relume_objects *o, int 
     return n;
 }
 
-// Room for all that can be shown.
-static relume_status make_room(relume_objects *to, const relume_objects *o)
+// Allocates what all that can be shown needs.
+static relume_status allocate_levels(relume_objects *to, const relume_objects *o)
 {
     size_t triangles = 0;
     for (int i = 0; i < o->info.parts; i++)
@@ -607,7 +607,7 @@ static relume_status make_room(relume_objects *to, const relume_objects *o)
 static relume_status show(relume_objects *to, const relume_objects *o)
 {
     uint32_t *number = mem_array(o->info.vertex_count, sizeof *number);
-    relume_status status = number ? make_room(to, o) : RELUME_ENOMEM;
+    relume_status status = number ? allocate_levels(to, o) : RELUME_ENOMEM;
     if (!status) {
         memset(number, 0xff, o->info.vertex_count * sizeof *number);
         to->info = o->info;

@@ -66,7 +66,7 @@ static inline vec3 objects_middle(const relume_objects *o)
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params);
 
-// Room for one more. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
+// Memory for one more. RELUME_ELIMIT with a sentence, RELUME_ENOMEM.
 relume_status objects_need_material(relume_objects *o, const char *name,
                                     const struct relume_log *log);
 // The model becomes the material's, and is destroyed where that fails. RELUME_ENOMEM.

@@ -228,7 +228,7 @@ relume_status objects_material(relume_objects *o, const char *folder, int *numbe
     return status;
 }
 
-// A material of a few numbers: one like it, or room for it.
+// A material of a few numbers: one like it, or a new one.
 static relume_status find_reflectance(struct relume_object_material **out, relume_objects *o,
                                       const struct relume_object_material *like, int *number,
                                       const struct relume_log *log)

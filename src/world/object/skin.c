@@ -72,8 +72,8 @@ static double chance(uint32_t triangle, float u, float v, const float direction[
     return (double)(key >> 11) * 0x1p-53;
 }
 
-static bool passes(const void *context, uint32_t triangle, float u, float v,
-                   const float direction[3], bool layers)
+static bool let_through(const void *context, uint32_t triangle, float u, float v,
+                        const float direction[3], bool layers)
 {
     const relume_objects *o = context;
     const struct relume_object_skin *skin = skin_of(o, (int)o->mesh.triangles[triangle].material);
@@ -94,7 +94,7 @@ static bool passes(const void *context, uint32_t triangle, float u, float v,
 
 bool skin_holes(struct trace_holes *out, const relume_objects *o)
 {
-    *out = (struct trace_holes){passes, o};
+    *out = (struct trace_holes){let_through, o};
     for (int i = 0; i < o->info.materials; i++)
         if (o->material[i].skin && o->material[i].skin->cover != RELUME_COVER_WHOLE)
             return true;

@@ -104,11 +104,11 @@ static void measure(struct shape *s, const relume_objects *o)
 static relume_status find_shape(struct shape *s, const struct bodies *b, int number,
                                 const relume_objects *o)
 {
-    size_t room = 0;
+    size_t total = 0;
     *s = (struct shape){.count = 0};
     for (int i = 0; i < b->parts; i++)
-        room += b->of_part[i] == number ? o->part[i].count : 0;
-    s->triangle = mem_array(room, sizeof *s->triangle);
+        total += b->of_part[i] == number ? o->part[i].count : 0;
+    s->triangle = mem_array(total, sizeof *s->triangle);
     if (!s->triangle)
         return RELUME_ENOMEM;
     for (int i = 0; i < b->parts; i++)

@@ -163,14 +163,14 @@ bool geodesic_locate(struct relume_reflection_place *out, const struct geodesic_
 
 // ---------------------------------------------------------------- the wave
 
-// Vertices that are reached but not passed, the nearest first: a binary heap, and where each
+// Vertices that are reached but not settled, the nearest first: a binary heap, and where each
 // vertex stands in it.
 struct wave {
     const struct geodesic_mesh *mesh;
     double *distance;  // [vertices]
     uint32_t *heap, *place;
     size_t waiting;
-    bool *passed;
+    bool *settled;
 };
 
 static void put(struct wave *w, size_t at, uint32_t vertex)
@@ -204,7 +204,7 @@ static uint32_t take_nearest(struct wave *w)
 
 static void reach(struct wave *w, uint32_t vertex, double distance)
 {
-    if (w->passed[vertex] || !(distance < w->distance[vertex]))
+    if (w->settled[vertex] || !(distance < w->distance[vertex]))
         return;
     if (w->distance[vertex] == INFINITY)
         put(w, w->waiting++, vertex);
@@ -228,11 +228,11 @@ static double over_edge(vec3 a, double da, vec3 b, double db, vec3 c)
     return crossing >= 0.0 && crossing <= length ? hypot(cx - sx, cy + sy) : INFINITY;
 }
 
-static void pass(struct wave *w, uint32_t from)
+static void settle(struct wave *w, uint32_t from)
 {
     const struct geodesic_mesh *m = w->mesh;
     const vec3 a = m->position[from];
-    w->passed[from] = true;
+    w->settled[from] = true;
     for (size_t i = m->first[from]; i < m->first[from + 1]; i++)
         for (int k = 0; k < 3; k++) {
             const uint32_t *corner = m->triangle[m->around[i]];
@@ -243,7 +243,7 @@ static void pass(struct wave *w, uint32_t from)
             if (to == from)
                 continue;
             reach(w, to, w->distance[from] + vec3_length(vec3_sub(c, a)));
-            if (w->passed[other] && other != from)
+            if (w->settled[other] && other != from)
                 reach(w, to,
                       over_edge(a, w->distance[from], m->position[other], w->distance[other], c));
         }
@@ -269,18 +269,18 @@ relume_status geodesic_distances(float *distance, const struct geodesic_mesh *m,
                      .distance = mem_array(m->vertices, sizeof *w.distance),
                      .heap = mem_array(m->vertices, sizeof *w.heap),
                      .place = mem_array(m->vertices, sizeof *w.place),
-                     .passed = mem_zeroed(m->vertices, sizeof *w.passed)};
-    const bool there = w.distance && w.heap && w.place && w.passed;
+                     .settled = mem_zeroed(m->vertices, sizeof *w.settled)};
+    const bool there = w.distance && w.heap && w.place && w.settled;
     if (there) {
         start(&w, point);
         while (w.waiting)
-            pass(&w, take_nearest(&w));
+            settle(&w, take_nearest(&w));
         for (size_t i = 0; i < m->given; i++)
             distance[i] = (float)w.distance[m->joined[i]];
     }
     mem_free(w.distance);
     mem_free(w.heap);
     mem_free(w.place);
-    mem_free(w.passed);
+    mem_free(w.settled);
     return there ? RELUME_OK : RELUME_ENOMEM;
 }

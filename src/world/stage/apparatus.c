@@ -80,8 +80,8 @@ static void blur_pair(const struct bench *b, struct spread *s, float *texels, in
         s->plane[2 * i + 1] = texels[3 * i + second];
     }
     fft2d_rows(b->fft, b->spectrum, 0, n, fill_row, s);
-    const struct fft2d_pass pass = {0, n, 0, n, weaken, s, true};
-    fft2d_pass_columns(b->fft, b->spectrum, &pass);
+    const struct fft2d_step step = {0, n, 0, n, weaken, s, true};
+    fft2d_step_columns(b->fft, b->spectrum, &step);
     fft2d_rows_back(b->fft, b->spectrum, 0, n, take_row, s);
     for (int i = 0; i < n * n; i++) {
         texels[3 * i + first] = s->plane[2 * i];

@@ -22,8 +22,8 @@ struct key {
 // What one worker reuses from tile to tile.
 struct scratch {
     struct places places;
-    struct key *keys;  // [key_room]
-    size_t key_room;
+    struct key *keys;  // [key_capacity]
+    size_t key_capacity;
     float sum[TILE_PIXELS][3];
 };
 
@@ -133,10 +133,10 @@ static int by_key(const void *a, const void *b)
 static bool sort_places(struct scratch *s, const struct bounds *bounds)
 {
     const size_t n = s->places.count;
-    if (n > s->key_room) {
+    if (n > s->key_capacity) {
         mem_free(s->keys);
         s->keys = mem_array(2 * n, sizeof *s->keys);
-        s->key_room = s->keys ? 2 * n : 0;
+        s->key_capacity = s->keys ? 2 * n : 0;
         if (!s->keys)
             return false;
     }

@@ -110,7 +110,7 @@ static relume_status take_camera(struct drawing *d, const struct relume_camera *
                     d->t->path);
 }
 
-static relume_status make_room(struct drawing *d)
+static relume_status allocate_drawing(struct drawing *d)
 {
     enum { PIXEL_BYTES = 5 * 3 * sizeof(float) + sizeof(int) };
     const size_t captures = (size_t)d->t->info.captures;
@@ -134,7 +134,7 @@ static relume_status begin(struct drawing *d, relume_tableau *t, const struct re
     d->t = t;
     relume_status status = take_camera(d, camera);
     if (!status)
-        status = make_room(d);
+        status = allocate_drawing(d);
     if (!status)
         status =
             tableau_choose(d->shown, t, &d->viewport.window, d->camera.width, d->camera.height);

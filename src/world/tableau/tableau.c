@@ -278,7 +278,7 @@ static relume_status read_camera(relume_tableau *t)
     return status;
 }
 
-static relume_status make_room(relume_tableau *t)
+static relume_status allocate_entries(relume_tableau *t)
 {
     enum { MOST_OBJECTS = 4096 };
     int captures = 0, objects = 0;
@@ -315,7 +315,7 @@ static relume_status read_all(relume_tableau *t)
     if (!status)
         status = jvalue_check_known(t->root, known, log_at(&place, t->params.log, "%s: ", t->path));
     if (!status)
-        status = make_room(t);
+        status = allocate_entries(t);
     if (!status)
         status = name_objects(t);
     for (int i = 0; i < t->info.captures && !status; i++)

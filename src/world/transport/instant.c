@@ -200,13 +200,13 @@ struct bounce {
 
 struct arrivals {
     struct arrival *at;
-    int n, room;
+    int n, most;
 };
 
 static void collect_arrival(void *context, const struct arrival *a)
 {
     struct arrivals *to = context;
-    if (to->n < to->room && (a->with[0] > 0.0f || a->with[1] > 0.0f || a->with[2] > 0.0f))
+    if (to->n < to->most && (a->with[0] > 0.0f || a->with[1] > 0.0f || a->with[2] > 0.0f))
         to->at[to->n++] = *a;
 }
 
@@ -223,8 +223,8 @@ static void gather_at_sender(void *context, size_t i, int worker)
     const struct bounce *b = context;
     const struct instant *s = b->s;
     struct sender *sender = &b->sender[i];
-    struct arrival room[2 * GATHERED];
-    struct arrivals arrivals = {room, 0, 2 * GATHERED};
+    struct arrival arrival[2 * GATHERED];
+    struct arrivals arrivals = {arrival, 0, 2 * GATHERED};
     const uint64_t key = random_mix(i);
     const size_t a = step_of(s->on_scene), on_objects = s->lights - s->on_scene;
     if (a)
@@ -234,9 +234,9 @@ static void gather_at_sender(void *context, size_t i, int worker)
         gather_some(b->w, s, &sender->site, s->on_scene + key % c, s->lights, c, collect_arrival,
                     &arrivals);
     if (sender->site.shines)
-        points_object_mean(sender->sent, b->w, &sender->point, key, room, arrivals.n);
+        points_object_mean(sender->sent, b->w, &sender->point, key, arrival, arrivals.n);
     else
-        points_object_sent(sender->sent, b->w, &sender->point, key, room, arrivals.n);
+        points_object_sent(sender->sent, b->w, &sender->point, key, arrival, arrivals.n);
 }
 
 static void send(const struct bounce *b, struct instant *s, const size_t *number)
@@ -320,7 +320,7 @@ static relume_status make_lights(struct instant *s, const struct world *w, size_
     return status;
 }
 
-static relume_status make_room(struct instant *s, size_t lights, const struct relume_log *log)
+static relume_status allocate_maps(struct instant *s, size_t lights, const struct relume_log *log)
 {
     const size_t maps = s->params.rays ? 0 : lights, side = (size_t)s->params.size;
     relume_status status = limits_memory(
@@ -367,7 +367,7 @@ relume_status instant_begin(struct world *w, const struct instant_params *p,
         s->params.points = (size_t)s->params.size * (size_t)s->params.size / POINTS;
     relume_status status = check_size(s, each, w, count + on_objects, log);
     if (!status)
-        status = make_room(s, count + on_objects, log);
+        status = allocate_maps(s, count + on_objects, log);
     if (!status)
         status = make_points(s, w);
     return status ? status : make_lights(s, w, count, on_objects);

@@ -11,7 +11,7 @@ enum { INSTANT_SAMPLES = 16, INSTANT_PATTERN = 8 };
 struct instant_params {
     int pattern;    // of the way
     bool rays;      // shadows by exact rays; else by imperfect shadow maps
-    int size;       // of each map: a power of two up to 256; 0: as the lights leave room for
+    int size;       // of each map: a power of two up to 256; 0: the largest that fits the memory
     size_t points;  // of the scene in each map, and of the objects; 0: as its size asks for
     bool unfilled;  // holes of maps are left
 };

@@ -39,13 +39,13 @@ struct maps_params {
     bool unfilled;  // holes are left
     int threads;
 };
-// Draws the maps, whose looks and room for whose depths the caller has made: each from a run of its
-// own of the points. RELUME_ENOMEM.
+// Draws the maps, whose looks and memory for whose depths the caller has made: each from a run of
+// its own of the points. RELUME_ENOMEM.
 relume_status maps_draw(struct maps *m, const struct points *points, const struct maps_params *p);
 // Holes are filled where levels of half the size know a surface, and what is seen through holes of
 // one is covered ("pull-push": Grossman and Dally 1998; Marroquim et al. 2007). Depths are one
-// surface where they differ by less than `apart`, twice as much at each level. `levels` has room
-// for size^2 / 2.
+// surface where they differ by less than `apart`, twice as much at each level. `levels` holds
+// size^2 / 2.
 struct map_level {
     float depth, spread;  // the mean of the nearest of four that are one surface, and their range
     int members;          // how many of them are: 2 to 4, or 0

@@ -147,7 +147,7 @@ static void leave_out_holes(struct points *p, const tracer *objects)
     for (size_t i = 0; i < p->count; i++) {
         float direction[3];
         vec3_store(direction, p->at[i].normal);
-        if (!trace_passes(objects, p->at[i].triangle, p->at[i].u, p->at[i].v, direction))
+        if (!trace_lets_through(objects, p->at[i].triangle, p->at[i].u, p->at[i].v, direction))
             p->at[kept++] = p->at[i];
     }
     p->count = kept;

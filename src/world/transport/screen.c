@@ -154,7 +154,7 @@ const struct relume_transport transport_ssao = {
     .samples = SAMPLES,
     .pattern = PATTERN,
     .screen = true,
-    .passes = 33,
+    .gl_version = 33,
     .gather = gather_ambient,
 };
 const struct relume_transport transport_ssdo = {
@@ -163,7 +163,7 @@ const struct relume_transport transport_ssdo = {
     .samples = SAMPLES,
     .pattern = PATTERN,
     .screen = true,
-    .passes = 33,
+    .gl_version = 33,
     .cameras = CAMERAS,
     .gather = gather_directional,
 };

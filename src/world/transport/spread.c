@@ -101,7 +101,7 @@ static struct grid grid_over(const struct mesh *m, const uint32_t *triangle, siz
 }
 
 // One place for each `step` of the area, from the middle of the first on.
-static size_t put_places(struct place *out, size_t room, const struct mesh *m,
+static size_t put_places(struct place *out, size_t capacity, const struct mesh *m,
                          const uint32_t *triangle, size_t count, double step, const struct grid *g)
 {
     double before = 0.0;
@@ -111,7 +111,7 @@ static size_t put_places(struct place *out, size_t room, const struct mesh *m,
         mesh_corners(c, m, triangle[i]);
         const vec3 twice = mesh_twice_area(c);
         before += 0.5 * vec3_length(twice);
-        while (n < room && ((double)n + 0.5) * step < before) {
+        while (n < capacity && ((double)n + 0.5) * step < before) {
             put_within(&out[n], c, triangle[i], n);
             out[n].cell = cell_of(g, out[n].position) << 3 | (uint64_t)side_of(twice);
             n++;
@@ -164,17 +164,17 @@ relume_status spread_make(struct spread *out, const struct mesh *mesh, const uin
                           size_t count, size_t wanted)
 {
     const double area = area_of(mesh, triangle, count);
-    const size_t room = PLACES * wanted;
-    const double step = area / (double)room;
-    struct place *place = mem_array(room, sizeof *place);
-    *out = (struct spread){.point = mem_array(room, sizeof *out->point)};
+    const size_t capacity = PLACES * wanted;
+    const double step = area / (double)capacity;
+    struct place *place = mem_array(capacity, sizeof *place);
+    *out = (struct spread){.point = mem_array(capacity, sizeof *out->point)};
     if (!place || !out->point) {
         mem_free(place);
         spread_free(out);
         return RELUME_ENOMEM;
     }
     const struct grid g = grid_over(mesh, triangle, count, area / (double)wanted);
-    const size_t n = area > 0.0 ? put_places(place, room, mesh, triangle, count, step, &g) : 0;
+    const size_t n = area > 0.0 ? put_places(place, capacity, mesh, triangle, count, step, &g) : 0;
     qsort(place, n, sizeof *place, by_cell);
     out->levels = g.levels;
     for (size_t i = 0, end; i < n; i = end) {

@@ -2,7 +2,7 @@
 #include "world/transport/transport.h"
 
 #include "core/math/random.h"
-#include "world/transport/passes.h"
+#include "world/transport/gl_version.h"
 
 #include <string.h>
 
@@ -38,9 +38,9 @@ int relume_transport_spacing(const struct relume_transport *transport)
     return transport->spacing;
 }
 
-int relume_transport_passes(const struct relume_transport *transport)
+int relume_transport_gl_version(const struct relume_transport *transport)
 {
-    return transport->passes;
+    return transport->gl_version;
 }
 
 int relume_transport_cameras(const struct relume_transport *transport)

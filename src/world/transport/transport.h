@@ -79,12 +79,12 @@ typedef void take_arrival(void *context, const struct arrival *arrival);
 
 struct relume_transport {
     const char *name, *summary;
-    int samples;  // at a site, by default
-    int spacing;  // sites gather at every so many pixels each way, by default; 0: always at each
-    int pattern;  // sites of `pattern` x `pattern` pixels share their directions; 1: none does
-    bool screen;  // needs the frames
-    int passes;   // OpenGL, times ten, by which relume-view gathers likewise; 0: it cannot
-    int cameras;  // further ones, by default
+    int samples;     // at a site, by default
+    int spacing;     // sites gather at every so many pixels each way, by default; 0: always at each
+    int pattern;     // sites of `pattern` x `pattern` pixels share their directions; 1: none does
+    bool screen;     // needs the frames
+    int gl_version;  // OpenGL, times ten, by which relume-view gathers likewise; 0: it cannot
+    int cameras;     // further ones, by default
     // NULL: there is nothing to prepare. What a light of the rig needs once before sites gather
     // under it; RELUME_ENOMEM. `end` frees it, and takes a state of NULL.
     relume_status (*begin)(struct world *w, const struct relume_log *log);

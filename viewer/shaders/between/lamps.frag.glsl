@@ -48,9 +48,9 @@ void main()
     if (cosine <= 0.0)
         discard;
     bool held = point.a > 1.5;  // a place of the objects themselves
-    float passes = let_through(point.xyz, normal), seen = reached(point.xyz, held ? normal : vec3(0.0));
+    float let_share = let_through(point.xyz, normal), seen = reached(point.xyz, held ? normal : vec3(0.0));
     all_without = vec4(cosine * rgb, 1.0);
     all_with = seen * all_without;
-    let_without = passes * all_without;
-    let_with = passes * all_with;
+    let_without = let_share * all_without;
+    let_with = let_share * all_with;
 }

@@ -1,10 +1,10 @@
-// What all models share: a pixel of the surface, the light sample of the pass, measured directions
+// What all models share: a pixel of the surface, the light sample of the draw, measured directions
 // around any direction. Before it: view_grid and light_grid (struct relume_btf_model); after it:
 // model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit; where
 // OWN_PLACES is, also model_at, which knows what lies between texels.
 //
 // Compiled twice: for light samples, and with SKY defined for an environment. Each level of detail
-// is a pass of its own, which adds its part of what lies between two levels.
+// is a draw of its own, which adds its part of what lies between two levels.
 #include "texels.glsl"
 #include "shared/cube.glsl"
 #include "light/light.glsl"
@@ -110,7 +110,7 @@ vec3 model_blend(int texel, Blend v, Blend l)
 }
 #endif
 
-// A place between the texels under the light of the pass.
+// A place between the texels under the light of the draw.
 #if defined(SKY) && defined(LOBES)
 vec3 model_lit(int texel, int view, vec3 v, mat3 frame);
 
@@ -208,7 +208,7 @@ vec3 mean_of(Points p, Blend v, Blend l, mat3 frame)
 #ifdef SKY
 
 #ifndef LOBES
-uniform ivec2 some_lights;  // the pass sums over these: from, to
+uniform ivec2 some_lights;  // the draw sums over these: from, to
 #endif
 
 // Without shadows. Twin: add_sky.

@@ -72,7 +72,7 @@ void gather(inout Sum sum, int c, float q, float surface)
 
 // ---------------------------------------------------------------- one ray
 
-bool pass(inout float q, int c, float found, float step_)
+bool find_crossing(inout float q, int c, float found, float step_)
 {
     float from = q + step_, before = disparity_at(c, from);
     float ahead = from - before, behind = found - q;
@@ -88,7 +88,7 @@ void add_seen(inout vec2 sum, int c, float q, float step_)
     if (!(camera[c].weight > NEGLIGIBLE && found > BACKGROUND))
         return;
     if (abs(found - q) > step_) {
-        if (!(slope > 0.0 && pass(q, c, found, step_)))
+        if (!(slope > 0.0 && find_crossing(q, c, found, step_)))
             return;
         found = q;
     }

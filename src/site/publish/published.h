@@ -1,6 +1,6 @@
-// scene.h - one file in the site: scene.json and the tiles of its views
-#ifndef PUBLISH_SCENE_H
-#define PUBLISH_SCENE_H
+// published.h - one file in the site: scene.json and the tiles of its views
+#ifndef PUBLISH_PUBLISHED_H
+#define PUBLISH_PUBLISHED_H
 
 #include "site/publish/common.h"
 #include "site/publish/details.h"
@@ -12,7 +12,7 @@
 #include <stdio.h>
 
 // A file that is being published.
-struct scene {
+struct published {
     const struct site *site;
     relume_pack *pack;
     const char *name;  // of its page and folder
@@ -32,11 +32,11 @@ struct scene {
 };
 
 // Planes, tiles and scene.json of the file, in a folder of its name.
-relume_status scene_write(struct scene *s);
-void scene_free(struct scene *s);
+relume_status published_write(struct published *f);
+void published_free(struct published *f);
 
 // scene.json alone, when all else is known: its members, and the file.
-void scene_put_json(struct jwriter *w, const struct scene *s);
-relume_status scene_write_json(const struct scene *s);
+void published_put_json(struct jwriter *w, const struct published *f);
+relume_status published_write_json(const struct published *f);
 
 #endif

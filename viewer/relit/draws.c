@@ -1,4 +1,4 @@
-// passes.c - distant lights on the GPU: dot products of planes, look-ups of codebooks
+// draws.c - distant lights on the GPU: dot products of planes, look-ups of codebooks
 #include "common/vec.h"
 #include "format/coder/coding.h"
 #include "relit/books.h"
@@ -51,7 +51,7 @@ static const char *const develop_uniforms[] = {
 
 // ---------------------------------------------------------------- making
 
-relume_status passes_create(struct gl_relighter *r)
+relume_status draws_create(struct gl_relighter *r)
 {
     relume_status status =
         program_create(&r->dot, r->gl, "relight.frag", dot_uniforms, DOT_COUNT, r->log);
@@ -67,7 +67,7 @@ relume_status passes_create(struct gl_relighter *r)
     return status;
 }
 
-void passes_destroy(struct gl_relighter *r)
+void draws_destroy(struct gl_relighter *r)
 {
     target_destroy(&r->coded, r->gl);
     program_destroy(&r->dot, r->gl);
@@ -79,9 +79,9 @@ void passes_destroy(struct gl_relighter *r)
     r->gl->DeleteVertexArrays(1, &r->vertices);
 }
 
-// ---------------------------------------------------------------- passes
+// ---------------------------------------------------------------- draws
 
-void passes_begin(const struct gl_relighter *r)
+void draws_begin(const struct gl_relighter *r)
 {
     r->gl->BindVertexArray(r->vertices);
     r->gl->Enable(GL_BLEND);
@@ -103,7 +103,7 @@ static relume_status need_grid(struct gl_relighter *r, const relume_coder *coder
 }
 
 // The dot product of all planes, added to what `into` holds.
-static void pass_dot(const struct gl_relighter *r, const struct relit_view *v,
+static void draw_dot(const struct gl_relighter *r, const struct relit_view *v,
                      const struct weights *w, const struct target *into)
 {
     const struct gl *gl = r->gl;
@@ -130,7 +130,7 @@ static void pass_dot(const struct gl_relighter *r, const struct relit_view *v,
 }
 
 // The look-up of all codebooks under `n` lights, added to what `into` holds.
-static relume_status pass_lookup(const struct gl_relighter *r, const struct relit_view *v,
+static relume_status draw_lookup(const struct gl_relighter *r, const struct relit_view *v,
                                  const struct relume_light *lights, int n,
                                  const struct target *into)
 {
@@ -164,14 +164,14 @@ static void develop(const struct gl_relighter *r, const struct relit_view *v,
     draw_all(gl, &r->develop, &v->relit);
 }
 
-void passes_develop(const struct gl_relighter *r, const struct relit_view *v,
-                    const struct target *coded, struct relume_transfer display, const float rgb[3])
+void draws_develop(const struct gl_relighter *r, const struct relit_view *v,
+                   const struct target *coded, struct relume_transfer display, const float rgb[3])
 {
     develop(r, v, coded, display, rgb, false);
 }
 
-void passes_guarded(const struct gl_relighter *r, const struct relit_view *v,
-                    const struct target *picture)
+void draws_guarded(const struct gl_relighter *r, const struct relit_view *v,
+                   const struct target *picture)
 {
     static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1, 1, 1};
@@ -182,18 +182,18 @@ void passes_guarded(const struct gl_relighter *r, const struct relit_view *v,
 static void add_guarded(struct gl_relighter *r, struct relit_view *v)
 {
     target_resume(&v->relit, r->gl);
-    passes_guarded(r, v, &r->coded);
+    draws_guarded(r, v, &r->coded);
 }
 
-relume_status passes_fit(const struct gl_relighter *r, struct target *target,
-                         const struct relit_view *v)
+relume_status draws_fit(const struct gl_relighter *r, struct target *target,
+                        const struct relit_view *v)
 {
     return target_need(target, r->gl, v->relit.width, v->relit.height, r->log);
 }
 
-relume_status passes_scratch(struct gl_relighter *r, const struct relit_view *v)
+relume_status draws_scratch(struct gl_relighter *r, const struct relit_view *v)
 {
-    return passes_fit(r, &r->coded, v);
+    return draws_fit(r, &r->coded, v);
 }
 
 static relume_status add_linear(struct gl_relighter *r, struct relit_view *v, struct weights *w)
@@ -209,12 +209,12 @@ static relume_status add_linear(struct gl_relighter *r, struct relit_view *v, st
     }
     const bool guard = gl_relighter_has_kind(r, gl_relighter_is_environment);
     if (!status && guard)
-        status = passes_scratch(r, v);
+        status = draws_scratch(r, v);
     if (status || !gl_relighter_has_kind(r, gl_relighter_is_distant))
         return status;
     if (guard)
         target_begin(&r->coded, r->gl);
-    pass_dot(r, v, w, guard ? &r->coded : &v->relit);
+    draw_dot(r, v, w, guard ? &r->coded : &v->relit);
     if (guard)
         add_guarded(r, v);
     return RELUME_OK;
@@ -235,10 +235,10 @@ static relume_status relight_one(struct relume_transfer *curve, float times[3],
         times[c] = whole ? 1.0f : rgb[c];
     target_begin(&r->coded, r->gl);
     if (v->codes.books)
-        return pass_lookup(r, v, light, 1, &r->coded);
+        return draw_lookup(r, v, light, 1, &r->coded);
     weights_clear(w);
     weights_add(w, &v->codes, code_format_of(&v->codes)->unit, from, one);
-    pass_dot(r, v, w, &r->coded);
+    draw_dot(r, v, w, &r->coded);
     return RELUME_OK;
 }
 
@@ -261,7 +261,7 @@ static relume_status add_alone(struct gl_relighter *r, struct relit_view *v, str
         return moving_draw(&r->moving, &v->moving, &p, &v->relit);
     if (!status) {
         target_resume(&v->relit, r->gl);
-        passes_develop(r, v, &r->coded, p.picture, p.times);
+        draws_develop(r, v, &r->coded, p.picture, p.times);
     }
     return status;
 }
@@ -269,7 +269,7 @@ static relume_status add_alone(struct gl_relighter *r, struct relit_view *v, str
 // Directional lights that are decoded one by one.
 static relume_status add_one_by_one(struct gl_relighter *r, struct relit_view *v, struct weights *w)
 {
-    relume_status status = passes_scratch(r, v);
+    relume_status status = draws_scratch(r, v);
     for (int i = 0; !status && i < r->lights; i++)
         if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL)
             status = add_alone(r, v, w, &r->light[i]);
@@ -292,18 +292,18 @@ static relume_status add_books(struct gl_relighter *r, struct relit_view *v)
     if (!status && guard)
         status = need_grid(r, v->codes.coder);
     if (!status && guard)
-        status = passes_scratch(r, v);
+        status = draws_scratch(r, v);
     if (!status && guard)
         target_begin(&r->coded, r->gl);
     if (!status)
-        status = pass_lookup(r, v, distant, n, guard ? &r->coded : &v->relit);
+        status = draw_lookup(r, v, distant, n, guard ? &r->coded : &v->relit);
     if (!status && guard)
         add_guarded(r, v);
     free(distant);
     return status;
 }
 
-relume_status passes_distant(struct gl_relighter *r, struct relit_view *v)
+relume_status draws_distant(struct gl_relighter *r, struct relit_view *v)
 {
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
     if (v->codes.books && !v->moving.shadows && (!display || v->codes.books == 1))
@@ -317,22 +317,22 @@ relume_status passes_distant(struct gl_relighter *r, struct relit_view *v)
     return status;
 }
 
-relume_status passes_environment(struct gl_relighter *r, struct relit_view *v,
-                                 const struct relume_light *light)
+relume_status draws_environment(struct gl_relighter *r, struct relit_view *v,
+                                const struct relume_light *light)
 {
     struct weights w = {0};
     relume_status status = need_grid(r, v->codes.coder);
     if (!status)
-        status = passes_scratch(r, v);
+        status = draws_scratch(r, v);
     if (!status && !v->codes.books)
         status = weights_create(&w, v->codes.coder, v->codes.planes);
     if (status)
         return status;
     target_begin(&r->coded, r->gl);
     if (v->codes.books)
-        return pass_lookup(r, v, light, 1, &r->coded);
+        return draw_lookup(r, v, light, 1, &r->coded);
     weights_add_environment(&w, &v->codes, code_format_of(&v->codes)->unit, r->grid, light);
-    pass_dot(r, v, &w, &r->coded);
+    draw_dot(r, v, &w, &r->coded);
     weights_destroy(&w);
     return RELUME_OK;
 }

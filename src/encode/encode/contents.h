@@ -1,6 +1,6 @@
-// material.h - what goes into a file while it is made: of all views, or of those of one part
-#ifndef ENCODE_MATERIAL_H
-#define ENCODE_MATERIAL_H
+// contents.h - what goes into a file while it is made: of all views, or of those of one part
+#ifndef ENCODE_CONTENTS_H
+#define ENCODE_CONTENTS_H
 
 #include "format/codebook/books.h"
 #include "format/coder/coding.h"
@@ -11,7 +11,7 @@
 #include <relume/encode/pack_encode.h>
 #include <relume/format/team.h>
 
-struct material {
+struct contents {
     const relume_capture *capture;
     const relume_coder *coder;
     const struct relume_pack_encode_params *p;
@@ -29,21 +29,21 @@ struct material {
     int row, rows;   // of one view alone; 0 rows: all
 };
 
-// `m` begins with the first four. RELUME_ENOMEM.
-relume_status material_create(struct material *m, const struct encode_share *share);
-void material_destroy(struct material *m);
+// `f` begins with the first four. RELUME_ENOMEM.
+relume_status contents_create(struct contents *f, const struct encode_share *share);
+void contents_destroy(struct contents *f);
 // The coefficients of view i, of the rows of this part; and its depth and mask.
-relume_status material_encode(struct material *m, int i);
-relume_status material_extras(struct material *m, int i);
+relume_status contents_encode(struct contents *f, int i);
+relume_status contents_extras(struct contents *f, int i);
 // The reduced levels of view i, where it gets any.
-relume_status material_reduce(struct material *m, int i);
+relume_status contents_reduce(struct contents *f, int i);
 
 // What all of a file has in common; its preview is that of `contents`.
-void material_contents(struct relume_pack_contents *contents, const struct material *m);
+void contents_describe(struct relume_pack_contents *contents, const struct contents *f);
 // What this part of the work is, with the digest of the capture. An input status.
-relume_status material_share(struct relume_pack_share *out, char digest[RELUME_DIGEST],
-                             const struct material *m);
-relume_status material_write(const struct relume_pack_contents *contents, const char *path,
+relume_status contents_share(struct relume_pack_share *out, char digest[RELUME_DIGEST],
+                             const struct contents *f);
+relume_status contents_write(const struct relume_pack_contents *contents, const char *path,
                              const struct relume_pack_encode_params *p);
 
 #endif

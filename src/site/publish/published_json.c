@@ -1,5 +1,5 @@
-// scene_json.c - scene.json: what the tiles mean
-#include "site/publish/scene.h"
+// published_json.c - scene.json: what the tiles mean
+#include "site/publish/published.h"
 
 #include "core/math/base64.h"
 #include "image/geometry/print.h"
@@ -15,14 +15,14 @@ static void put_floats(struct jwriter *w, const char *key, const float *v, size_
     base64_put(w, key, v, n * sizeof *v);
 }
 
-static void put_details(struct jwriter *w, const struct scene *s)
+static void put_details(struct jwriter *w, const struct published *f)
 {
-    text_put_details(w, s->name, &s->details);
-    if (s->mm_per_pixel > 0.0) {
+    text_put_details(w, f->name, &f->details);
+    if (f->mm_per_pixel > 0.0) {
         jgap(w, "\n  ");
-        jput_number(w, "mm_per_pixel", s->mm_per_pixel, 9);
+        jput_number(w, "mm_per_pixel", f->mm_per_pixel, 9);
     }
-    if (s->notes) {
+    if (f->notes) {
         jgap(w, "\n  ");
         jput_truth(w, "notes", true);
     }
@@ -51,29 +51,29 @@ static void put_basis(struct jwriter *w, const struct common *c)
     jclose_levels(w, 2);
 }
 
-static void put_planes(struct jwriter *w, const struct scene *s)
+static void put_planes(struct jwriter *w, const struct published *f)
 {
-    const struct common *c = &s->common;
-    const size_t functions = (size_t)c->functions, planes = (size_t)s->levels.planes;
+    const struct common *c = &f->common;
+    const size_t functions = (size_t)c->functions, planes = (size_t)f->levels.planes;
     jgap(w, "\n  ");
     jput_integer(w, "functions", c->functions);
-    jput_integer(w, "planes", s->levels.planes);
+    jput_integer(w, "planes", f->levels.planes);
     put_floats(w, "transform", c->transform, 3 * planes * functions);
     put_floats(w, "mean", c->mean, 3 * functions);
     jgap(w, "\n  ");
-    jput_floats(w, "scale", s->levels.scale, planes, 9);
+    jput_floats(w, "scale", f->levels.scale, planes, 9);
     jgap(w, "\n  ");
-    jput_floats(w, "offset", s->levels.offset, planes, 9);
+    jput_floats(w, "offset", f->levels.offset, planes, 9);
 }
 
-static void put_levels(struct jwriter *w, const struct scene *s)
+static void put_levels(struct jwriter *w, const struct published *f)
 {
-    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const struct relume_pack_info *info = relume_pack_info(f->pack);
     int width = info->width, height = info->height;
     jgap(w, "\n  ");
     jput_integer(w, "tile", LEVELS_TILE);
     jopen_array(w, "levels");
-    for (int i = 0; i < s->levels.count; i++) {
+    for (int i = 0; i < f->levels.count; i++) {
         jopen_object(w, NULL);
         jput_integer(w, "width", width);
         jput_integer(w, "height", height);
@@ -83,12 +83,12 @@ static void put_levels(struct jwriter *w, const struct scene *s)
     }
     jclose(w);
     jgap(w, "\n  ");
-    jput_integer(w, "first_level", s->first_level);
+    jput_integer(w, "first_level", f->first_level);
 }
 
-static void put_view(struct jwriter *w, const struct scene *s, int i)
+static void put_view(struct jwriter *w, const struct published *f, int i)
 {
-    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const struct relume_pack_info *info = relume_pack_info(f->pack);
     char name[16];
     snprintf(name, sizeof name, "v%d", i);
     jgap(w, "\n    ");
@@ -96,95 +96,95 @@ static void put_view(struct jwriter *w, const struct scene *s, int i)
     jput_text(w, "name", name);
     if (info->geometry.projection == RELUME_SLAB)
         jput_numbers(w, "uv", info->uv[i], 2, 9);
-    if (s->layers[i].depth) {
+    if (f->layers[i].depth) {
         jput_truth(w, "depth", true);
-        jput_number(w, "depth_min", s->layers[i].depth_min, 9);
-        jput_number(w, "depth_step", s->layers[i].depth_step, 9);
+        jput_number(w, "depth_min", f->layers[i].depth_min, 9);
+        jput_number(w, "depth_step", f->layers[i].depth_step, 9);
     }
-    if (s->moving[i].there) {
+    if (f->moving[i].there) {
         jopen_object(w, "moving");
-        jput_floats(w, "scale", s->moving[i].scale, MOVING_NUMBERS, 9);
-        jput_floats(w, "offset", s->moving[i].offset, MOVING_NUMBERS, 9);
+        jput_floats(w, "scale", f->moving[i].scale, MOVING_NUMBERS, 9);
+        jput_floats(w, "offset", f->moving[i].offset, MOVING_NUMBERS, 9);
         jclose(w);
     }
-    if (s->layers[i].mask)
+    if (f->layers[i].mask)
         jput_truth(w, "mask", true);
     jclose(w);
 }
 
-static void put_views(struct jwriter *w, const struct scene *s)
+static void put_views(struct jwriter *w, const struct published *f)
 {
     jgap(w, "\n  ");
     jopen_array(w, "views");
-    for (int i = 0; i < relume_pack_info(s->pack)->views; i++)
-        put_view(w, s, i);
+    for (int i = 0; i < relume_pack_info(f->pack)->views; i++)
+        put_view(w, f, i);
     jgap(w, "\n  ");
     jclose(w);
 }
 
 // Whether planes are coded while the file blends the pictures of neighbouring lights in linear
 // light.
-static bool is_linear_between(const struct scene *s)
+static bool is_linear_between(const struct published *f)
 {
-    const struct relume_coder_info *info = relume_coder_info(s->common.raw);
-    return relume_pack_info(s->pack)->domain == RELUME_DOMAIN_LINEAR &&
-           s->common.source.coding.curve != RELUME_CURVE_LINEAR && info->interpolant &&
+    const struct relume_coder_info *info = relume_coder_info(f->common.raw);
+    return relume_pack_info(f->pack)->domain == RELUME_DOMAIN_LINEAR &&
+           f->common.source.coding.curve != RELUME_CURVE_LINEAR && info->interpolant &&
            !strcmp(info->interpolant->name, "delaunay");
 }
 
-static void put_light(struct jwriter *w, const struct scene *s)
+static void put_light(struct jwriter *w, const struct published *f)
 {
-    const struct common *c = &s->common;
+    const struct common *c = &f->common;
     char transfer[32];
     relume_transfer_text(c->source.coding, transfer, sizeof transfer);
     jgap(w, "\n  ");
     jput_text(w, "transfer", transfer);
-    if (is_linear_between(s)) {
+    if (is_linear_between(f)) {
         jgap(w, "\n  ");
         jput_text(w, "between", "linear");
     }
     put_basis(w, c);
-    put_planes(w, s);
+    put_planes(w, f);
     if (c->guided) {
         jgap(w, "\n  ");
         jput_number(w, "knee", (double)GUIDE_KNEE, 6);
     }
-    if (s->levels.layers != RELUME_PUBLISH_JPEG) {
+    if (f->levels.layers != RELUME_PUBLISH_JPEG) {
         jgap(w, "\n  ");
-        jput_text(w, "pictures", s->levels.layers == RELUME_PUBLISH_AVIF ? "avif" : "both");
+        jput_text(w, "pictures", f->levels.layers == RELUME_PUBLISH_AVIF ? "avif" : "both");
     }
-    if (s->metered) {
+    if (f->metered) {
         jgap(w, "\n  ");
-        jput_number(w, "exposure", s->exposure, 6);
+        jput_number(w, "exposure", f->exposure, 6);
     }
 }
 
-void scene_put_json(struct jwriter *w, const struct scene *s)
+void published_put_json(struct jwriter *w, const struct published *f)
 {
-    const struct relume_pack_info *info = relume_pack_info(s->pack);
-    const bool newer = s->common.guided || s->levels.layers == RELUME_PUBLISH_AVIF;
+    const struct relume_pack_info *info = relume_pack_info(f->pack);
+    const bool newer = f->common.guided || f->levels.layers == RELUME_PUBLISH_AVIF;
     jopen_object(w, NULL);
     jgap(w, "\n  ");
     jput_text(w, "format", "relume-web");
     jput_integer(w, "version", newer ? 2 : 1);
-    put_details(w, s);
+    put_details(w, f);
     jgap(w, "\n  ");
     jput_integer(w, "width", info->width);
     jput_integer(w, "height", info->height);
     geometry_put(w, &info->geometry);
-    put_light(w, s);
-    put_levels(w, s);
+    put_light(w, f);
+    put_levels(w, f);
     if (info->has_shadow || info->has_gloss) {
         jgap(w, "\n  ");
         jput_text(w, "moves", info->has_shadow ? "shadows" : "highlights");
     }
-    put_views(w, s);
+    put_views(w, f);
     jgap(w, "\n");
 }
 
-relume_status scene_write_json(const struct scene *s)
+relume_status published_write_json(const struct published *f)
 {
     struct jwriter w = {.style = JSON_MARKUP};
-    scene_put_json(&w, s);
-    return site_save_json(s->site, s->name, "scene.json", true, &w);
+    published_put_json(&w, f);
+    return site_save_json(f->site, f->name, "scene.json", true, &w);
 }

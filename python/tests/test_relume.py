@@ -315,7 +315,7 @@ class Tool(Fixture):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        subprocess.run([TOOL, *"synth box -o dome --size 20 --lights 16 --samples 1 --hemisphere -q".split()],
+        subprocess.run([TOOL, *"synth box -o dome --size 12 --lights 16 --samples 1 --hemisphere -q".split()],
                        check=True, cwd=cls.path)
 
     def test_files_of_the_tool(self):

@@ -36,9 +36,9 @@ as_one 'one process' 1 slab --basis sh
 as_one 'rows of two views, blocks of one of them' 5 cut --basis sh --coefficients 4
 "$RELUME" synth teapot -o few --size 24 --views 3x3 --lights 5 --samples 1 -q
 as_one 'with loss, a process without views' 3 few --basis pca --coefficients 4 --psnr 26
-"$sphere" wide --size 520 --lights 4 --hemisphere --mask --format png
+"$sphere" wide --size 1544 --rows 16 --lights 4 --hemisphere --mask --format png
 as_one 'tiles of one picture' 3 wide --basis sh --coefficients 4 --psnr 20
-as_one 'bytes, a pyramid, a process without tiles' 5 wide --basis sh --coefficients 4 --bytes-per-pixel 0.03 --pyramid yes
+as_one 'bytes, a pyramid, a process without tiles' 5 wide --basis sh --coefficients 4 --bytes-per-pixel 0.5 --pyramid yes
 # halves where 8 bits turn out too few
 "$sphere" lamp --size 32 --lights 1 --views 3 --hemisphere
 for view in lamp/view0?; do

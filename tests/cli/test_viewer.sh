@@ -30,7 +30,7 @@ awk 'BEGIN {
         printf "{ \"light\": \"%s %f %f 2\", \"rgb\": [1e-4, 1e-4, %f] }%s\n",
             i % 200 ? "dir" : "point", cos(i), sin(i), i / 1e8, i < 9999 ? "," : " ] }"
 }' >many.json
-same 'ten thousand lights' --rig many.json
+same 'ten thousand lights' --view 1 --rig many.json
 same 'a slab in a frame of another shape' --eye 0.1,-0.2,3 --interpolate linear --size 61x24
 same 'a view of half the size' --view 1 --size 12
 same 'a view by its height, in no whole proportion' --view 1 --size x9

@@ -206,8 +206,7 @@ static void a_furnace_hides_what_is_white(void **state)
     relume_objects *o = place_ball(1.0f);
     for (int way = 0; way < WAYS; way++) {
         relume_pack *pack = open_furnace("furnace", true);
-        struct relume_image got =
-            with_ball(pack, o, ways[way], &light, way < 3 ? 256 : 64, way < 3 ? 8 : 4);
+        struct relume_image got = with_ball(pack, o, ways[way], &light, way < 3 ? 256 : 64, 8);
         double worst = 0.0;
         double sum = 0.0;
         for (int i = 0; i < COLUMNS * ROWS * 3; i++) {
@@ -320,7 +319,7 @@ static void a_furnace_lights_what_is_translucent(void **state)
     static const char *const ways[] = {"path", "ssao", "ssdo", "ism"};  // radiosity enters as ism
     for (int way = 0; way < (TEST_SANITIZED ? 1 : 4); way++) {
         struct relume_image got =
-            with_ball(pack, o, ways[way], &light, way == 1 || way == 2 ? 16 : 64, way ? 2 : 8);
+            with_ball(pack, o, ways[way], &light, way == 1 || way == 2 ? 16 : 64, 8);
         const struct relume_vec3 to = {ball[0], ball[1], ball[2]};
         float found = 0.0f;
         double nearest = 0.0;

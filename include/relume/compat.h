@@ -8,10 +8,10 @@
 #include <relume/extensions.h>
 
 #define relume_object_vertex relume_mesh_vertex
-#define relume_project_params relume_project_params
-#define relume_fidelity relume_fidelity
-#define relume_census relume_census
-#define relume_capture_domain relume_capture_domain
+#define relume_encode_params relume_project_params
+#define relume_encode_report relume_fidelity
+#define relume_encode_census relume_census
+#define relume_encode_domain relume_capture_domain
 
 #define relume_baked_is_file(path, limits) (relume_kind_of(path) == RELUME_KIND_BAKED)
 #define relume_tableau_is(path)            (relume_kind_of(path) == RELUME_KIND_SCENE)

@@ -90,8 +90,7 @@ static bool has_levels(const struct contents *f)
            (f->p->pyramid || pyramid_is_possible(&contents));
 }
 
-relume_status encode_coded(struct contents *f, const char *path,
-                           struct relume_fidelity *report)
+relume_status encode_coded(struct contents *f, const char *path, struct relume_fidelity *report)
 {
     struct coding c = {.f = f, .team = f->p->team, .leveled = has_levels(f)};
     c.levels_by = mem_zeroed((size_t)f->views, sizeof *c.levels_by);

@@ -14,7 +14,6 @@ static inline bool encode_is_coded(const struct relume_pack_encode_params *p)
 // bytes_per_pixel. Of a part these are the tiles of its share; what all parts must know
 // is shared with the team, each part making what its own views say; without a team all is made
 // here. Errors as relume_pack_encode.
-relume_status encode_coded(struct contents *f, const char *path,
-                           struct relume_fidelity *report);
+relume_status encode_coded(struct contents *f, const char *path, struct relume_fidelity *report);
 
 #endif

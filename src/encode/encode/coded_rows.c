@@ -64,7 +64,7 @@ static struct rows covered(const struct coded_rows *r, const struct lossy_cut *c
 
 // The rows of tiles `first` .. `end` of a view, whether they are there or not.
 static relume_status project_rows(struct coded_rows *r, const struct lossy_cut *cut, int view,
-                                 int first, int end)
+                                  int first, int end)
 {
     struct contents *f = r->f;
     relume_coefficients **c = &f->coefficients[view];
@@ -179,7 +179,7 @@ static relume_status count_share(void *context)
             if (!v->rows)
                 continue;
             status = project_rows(r, &g->cut[i], g->view[k], first,
-                                 first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
+                                  first + (v->rows + g->cut[i].side - 1) / g->cut[i].side);
             if (!status)
                 count_view(r, g->view[k]);
         }

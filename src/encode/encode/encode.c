@@ -244,7 +244,7 @@ static relume_status settle_rows(struct contents *f)
     f->view[f->first].mask = mask->data ? mask : NULL;
     return status ? status
                   : project_settle_rows(f->coefficients[f->first], mask,
-                                       relume_encode_curve(f->capture, f->p->display), f->encode);
+                                        relume_encode_curve(f->capture, f->p->display), f->encode);
 }
 
 // What is said of the work on all views, as that of a part.

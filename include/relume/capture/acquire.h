@@ -67,6 +67,8 @@ struct relume_acquire_params {
     bool radial;  // by an even polynomial of the distance from the middle that is fitted to
                   // `flats`; default: pixel by pixel
     bool align;   // bring photographs on top of the first one by homographies
+    bool no_registration;  // leave photographs as they are where the camera was moved; default:
+                           // shifts of half a pixel and more are found and taken out
 
     // By-products: pictures that are written beside the capture. Default: none.
     const char *normals, *albedo, *height;
@@ -84,6 +86,8 @@ struct relume_acquired_photo {
     float similarity;                // median to others, relume_edge_correlation; NaN: not measured
     float sharpness;                 // fine detail of what it shows, relative to the median of the
                                      // photographs; NaN: not measured
+    double shift[2];                 // pixels to the right and down by which the scene lay beside
+                                     // where most photographs have it; taken out
     struct relume_ball_light light;  // by the first ball
     double sigma_deg;                // estimated error of the direction, degrees; 0: not known
     bool outlier;                    // contradicts its light and the others

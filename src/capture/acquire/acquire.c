@@ -38,6 +38,7 @@ relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...
     mem_free(image);
     const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
     relume_image_destroy(&s->shot[i].small);
+    relume_image_destroy(&s->shot[i].luma);
     memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
     s->shots--;
     if (!status && s->shots < 3)
@@ -94,6 +95,7 @@ static relume_status fill_result(struct acquisition *s)
             .black = from->black,
             .similarity = from->similarity,
             .sharpness = from->sharpness,
+            .shift = {from->shift[0], from->shift[1]},
             .light = from->light,
             .sigma_deg = from->sigma_deg,
         };
@@ -453,8 +455,10 @@ static relume_status check_inputs(const struct acquisition *s)
 
 static void release(struct acquisition *s)
 {
-    for (int i = 0; s->shot && i < s->shots; i++)
+    for (int i = 0; s->shot && i < s->shots; i++) {
         relume_image_destroy(&s->shot[i].small);
+        relume_image_destroy(&s->shot[i].luma);
+    }
     mem_free(s->shot);
     relume_image_destroy(&s->first);
     relume_image_destroy(&s->gain);

@@ -17,6 +17,9 @@ struct shot {
     char name[32];                 // of the image in the folder
     struct relume_exif notes;
     struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
+    struct relume_image luma;   // root of the mean channel, at most acquire_luma_side pixels a side
+    double shift[2];  // where the scene lies, pixels to the right and down from where most
+                      // photographs have it; taken out when the photograph is read
     float saturated, black, similarity;
     double fine, coarse;       // detail.c: curvature from pixel to pixel, differences farther off
     char sha256[SHA256_TEXT];  // of the file
@@ -60,6 +63,7 @@ struct acquisition {
     struct shot *shot;
     int width, height;  // of the photographs
     int orientation;    // of the first, which all have: the camera stands still; 0: none yet
+    bool again;         // photographs are read a second time, since some were moved
     struct relume_image first;  // that others are aligned to; empty unless params.align
     struct relume_image gain;   // that evens out the light, of one flat field; empty: none yet
     struct relume_image grey;   // sum of what photographs show in params.white
@@ -118,6 +122,13 @@ relume_status acquire_flatten(struct acquisition *s, const struct shot *shot,
                               struct relume_image *image);
 // Make the colours right by the matrix of a colour target, where there is one.
 void acquire_correct(const struct acquisition *s, struct relume_image *image, bool floats);
+// Finds photographs whose scene lies elsewhere by half a pixel or more, since the camera was
+// moved: says which, and fills their shift; `*moved`: there are some. RELUME_ENOMEM.
+relume_status acquire_register(struct acquisition *s, bool *moved);
+// Lumas of so many photographs have at most so many pixels a side.
+int acquire_luma_side(int shots);
+// Moves a picture back by a shift; its border is repeated. RELUME_ENOMEM.
+relume_status acquire_move_back(struct relume_image *image, const double shift[2]);
 // How sharp a photograph is by itself.
 void acquire_measure_detail(struct shot *shot, const struct relume_image *image);
 // Check sums of the photographs' files. An input status, RELUME_ENOMEM.

@@ -60,10 +60,15 @@ relume_status acquire_load_balls(struct relume_image *out, const struct acquisit
 {
     const bool own = s->shot[i].ball_path && s->p.ball_transfer.curve != RELUME_CURVE_AUTO;
     struct relume_exif notes;
-    const relume_status status = acquire_load(out, &notes, s, ball_photo(&s->shot[i]),
-                                              own ? s->p.ball_transfer : s->p.transfer);
-    if (!status)
-        acquire_correct(s, out, notes.floats);
+    relume_status status = acquire_load(out, &notes, s, ball_photo(&s->shot[i]),
+                                        own ? s->p.ball_transfer : s->p.transfer);
+    if (status)
+        return status;
+    acquire_correct(s, out, notes.floats);
+    if (!s->shot[i].ball_path)
+        status = acquire_move_back(out, s->shot[i].shift);
+    if (status)
+        relume_image_destroy(out);
     return status;
 }
 

@@ -2,6 +2,7 @@
 #include "capture/acquire/acquire.h"
 
 #include "capture/acquire/ball.h"
+#include "capture/hdr/structure.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
@@ -13,11 +14,11 @@
 static const float WHITE = 0.998f, BLACK = 0.002f;
 static const float FAINT = 2e-4f;  // about one code of 8 bits in the dark
 
-// Boxes of `step` x `step` pixels.
-static relume_status shrink(struct relume_image *out, const struct relume_image *from)
+// Boxes of `step` x `step` pixels, so that at most `most` are left along a side.
+static relume_status shrink(struct relume_image *out, const struct relume_image *from, int most)
 {
     const int side = from->width > from->height ? from->width : from->height;
-    const int step = (side + SHOT_SMALL - 1) / SHOT_SMALL;
+    const int step = (side + most - 1) / most;
     const int w = from->width / step, h = from->height / step;
     const relume_status status = relume_image_create(out, w > 0 ? w : 1, h > 0 ? h : 1, 3);
     if (status)
@@ -42,6 +43,21 @@ static void count_ends(struct shot *shot, const struct relume_image *image, bool
     }
     shot->saturated = (float)white / (float)n;
     shot->black = (float)black / (float)n;
+}
+
+// For registration, before the photograph is moved by it.
+static relume_status keep_luma(struct acquisition *s, struct shot *shot,
+                               const struct relume_image *image)
+{
+    struct relume_image small;
+    if (s->again || s->p.no_registration)
+        return RELUME_OK;
+    relume_status status = shrink(&small, image, acquire_luma_side(s->photographs.count));
+    if (status)
+        return status;
+    status = structure_luma(&shot->luma, &small, s->p.threads);
+    relume_image_destroy(&small);
+    return status;
 }
 
 // Means of the logarithm, for finding the balls.
@@ -151,7 +167,7 @@ static relume_status warn_of_orientation(struct acquisition *s, const struct sho
         s->orientation = shot->notes.orientation;
         return RELUME_OK;
     }
-    if (shot->notes.orientation == s->orientation)
+    if (shot->notes.orientation == s->orientation || s->again)
         return RELUME_OK;
     return acquire_warn_alike(
         s, ALIKE_TURNED, 1.0,
@@ -190,24 +206,42 @@ static relume_status take_photograph(struct acquisition *s, int i, struct relume
     if (!status)
         acquire_correct(s, image, shot->notes.floats);
     if (!status)
+        status = keep_luma(s, shot, image);
+    if (!status)
+        status = acquire_move_back(image, shot->shift);
+    if (!status)
         status = acquire_add_grey(s, image);
     if (!status)
         status = align(s, i, image);
     if (!status)
-        status = shrink(&shot->small, image);
+        status = shrink(&shot->small, image, SHOT_SMALL);
     if (!status && !shot->ball_path && !s->p.lights)
         status = add_to_mean(s, image);
     return status ? status : save(s, shot, image);
 }
 
-relume_status acquire_read(struct acquisition *s)
+// Forgets the sums and the small pictures of a first reading.
+static void forget(struct acquisition *s)
+{
+    relume_image_destroy(&s->mean);
+    relume_image_destroy(&s->peak);
+    relume_image_destroy(&s->change);
+    relume_image_destroy(&s->first);
+    relume_image_destroy(&s->grey);
+    s->summed = 0;
+    for (int i = 0; i < s->shots; i++)
+        relume_image_destroy(&s->shot[i].small);
+}
+
+static relume_status read_all(struct acquisition *s)
 {
     relume_status status = RELUME_OK;
     const int all = s->shots;
     for (int i = 0, done = 0; !status && i < s->shots; done++) {
         struct relume_image image;
         struct shot *shot = &s->shot[i];
-        snprintf(shot->name, sizeof shot->name, "light%04d.exr", done);
+        if (!*shot->name)
+            snprintf(shot->name, sizeof shot->name, "light%04d.exr", done);
         status = acquire_load(&image, &shot->notes, s, shot->path, s->p.transfer);
         if (!status)
             status = take_photograph(s, i, &image);
@@ -219,11 +253,27 @@ relume_status acquire_read(struct acquisition *s)
         if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))
             status = RELUME_ECANCEL;
     }
+    return status;
+}
+
+relume_status acquire_read(struct acquisition *s)
+{
+    bool moved = false;
+    relume_status status = read_all(s);
+    if (!status && s->shots < 3)
+        status = log_fail(s->p.log, RELUME_EUNFIT, "%d photographs; expected at least 3", s->shots);
+    if (!status && !s->p.no_registration)
+        status = acquire_register(s, &moved);
+    for (int i = 0; i < s->shots; i++)
+        relume_image_destroy(&s->shot[i].luma);
+    if (!status && moved) {
+        forget(s);
+        s->again = true;
+        status = read_all(s);
+    }
     for (size_t i = 0; s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++) {
         s->mean.data[i] = expf(s->mean.data[i]);
         s->change.data[i] = sqrtf(s->change.data[i] / (float)s->summed);
     }
-    if (!status && s->shots < 3)
-        status = log_fail(s->p.log, RELUME_EUNFIT, "%d photographs; expected at least 3", s->shots);
     return status;
 }

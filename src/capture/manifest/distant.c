@@ -1,12 +1,12 @@
 // distant.c - the reflectance that distant lights would show, from near ones
 //
 // A pixel has samples at directions of its own, L_i. Its value at a direction D_j is interpolated
-// from those of the MOST lights nearest to it, by the weights of a Gaussian process with covariance
-//     k(a, b) = LAMBERT a.b + exp(-|a - b|)  (+ NUGGET where a = b)
-// The first term makes the answer exact for what is linear in the light, as the shading of a matte
-// surface is; the second follows the rest; the third keeps noise from growing where D_j lies beside
-// all L_i (Rasmussen and Williams 2006, 2.2, 2.7). Weights change slowly over the picture: they are
-// found at nodes and interpolated between them.
+// from those of the MOST lights nearest to it. The weights are those of a Gaussian process
+// (Rasmussen and Williams 2006, 2.2, 2.7) with covariance
+//     k(a, b) = LAMBERT a.b + exp(-|a - b|)  (+ NUGGET where a = b).
+// The first term makes the answer exact where values are linear in the light, as the shading of a
+// matte surface is. The second follows the rest. The third keeps noise from growing where D_j lies
+// beside all L_i. Weights change slowly over the picture: they are found at nodes and interpolated.
 #include "capture/manifest/distant.h"
 
 #include "core/base/memory.h"

@@ -9,7 +9,7 @@ struct capture_options {
     struct relume_transfer transfer, ball_transfer;
     double white[4], target_corners[8];
     const char *target, *target_values;
-    enum { ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
+    enum { ALIGN_AUTO, ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
     struct points ball;
     struct texts ball_photos, flat;
@@ -70,9 +70,11 @@ static const struct option options[] = {
         "photograph of an even white surface: removes uneven light; one, or one under each light"),
     FLAG("--radial", radial,
          "--flat: use only how it falls off from the middle, as a smooth curve"),
-    NAME("--align", align, "A",
-         "move the photographs onto each other: none, blocks or homography; default: none",
-         ALIGN_NONE, "none", "homography"),
+    NAME(
+        "--align", align, "A",
+        "auto (find where the camera was moved, and move back), none, or homography (each onto the "
+        "first); default: auto",
+        ALIGN_AUTO, "auto", "none", "homography"),
     GROUP("surface"),
     TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE.exr", "write surface normals"),
     TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),
@@ -133,6 +135,7 @@ static struct relume_acquire_params read_options(const struct capture_options *o
         .flat_count = o->flat.count,
         .radial = o->radial,
         .align = o->align == ALIGN_HOMOGRAPHY,
+        .no_registration = o->align == ALIGN_NONE,
         .normals = o->normals,
         .albedo = o->albedo,
         .height = o->height,
@@ -223,6 +226,8 @@ static void put_photograph(struct jwriter *w, const struct relume_acquisition *s
     jput_number(w, "error_deg", s->photo[i].sigma_deg, 6);
     jput_number(w, "saturated", (double)s->photo[i].saturated, 6);
     jput_number(w, "sharpness", (double)s->photo[i].sharpness, 9);
+    if (s->photo[i].shift[0] != 0.0 || s->photo[i].shift[1] != 0.0)
+        jput_numbers(w, "shift", s->photo[i].shift, 2, 6);
     jclose(w);
 }
 

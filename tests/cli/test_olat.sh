@@ -56,7 +56,7 @@ expect_ok 'a stage' - "$RELUME" encode stage -o a.exr --basis table --bits half 
 expect_ok 'from the capture' - "$RELUME" encode cap -o c.exr --basis table --bits half -q
 for f in a c; do "$RELUME" relight $f.exr -o $f-lit.exr --light 'dir 0.3 0.2 1'; done
 below 'is the capture' "$("$mkimage" maxdiff a-lit.exr c-lit.exr)" 1e-6
-awk 'BEGIN { print "name,x,y,z" } { printf "l%d,%s,%s,%s\n", NR, $1, $2, $3 }' stage/light_dirs.txt >lights.csv
+awk 'BEGIN { print "name,x,y,z" } { printf "dir_%d,%s,%s,%s\n", NR - 1, $1, $2, $3 }' stage/light_dirs.txt >lights.csv
 awk 'BEGIN { printf "[" } { printf "%s[%s, %s, %s]", (NR > 1 ? ", " : ""), $1, $2, $3 } END { print "]" }' stage/light_dirs.txt >lights.json
 for list in lights.csv lights.json; do
     rm -f stage/*.*
@@ -65,13 +65,24 @@ for list in lights.csv lights.json; do
     same "$list says the same" a.exr b.exr
 done
 
+# Tables that name their pictures, in another order; that name others
+rm -f stage/*.*
+{ head -n 1 lights.csv; sed 1d lights.csv | sort -r; } >stage/lights.csv
+expect_ok 'a table by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
+same 'its order does not matter' a.exr b.exr
+sed 's/dir_/l/' lights.csv >stage/lights.csv
+expect_ok 'a table of other names' 'warning: stage/lights.csv: none of the listed images exists' "$RELUME" encode stage -o b.exr --basis table --bits half
+same 'its lights are taken in order' a.exr b.exr
+
 # JSON that names its pictures, in another order; with a name that is none
 rm -f stage/*.*
 awk '{ line[NR] = sprintf("{\"name\": \"dir_%d.exr\", \"direction\": [%s, %s, %s]}", NR - 1, $1, $2, $3) } END { printf "["; for (i = NR; i > 0; i--) printf "%s%s", line[i], (i > 1 ? ", " : "]\n") }' places.txt >stage/lights.json
 expect_ok 'a list by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
 same 'says the same in any order' a.exr b.exr
 sed -i 's/dir_7\./dir_77./' stage/lights.json
-expect_fail 'a picture without a light' 1 "names no light 'dir_7.exr'" no "$RELUME" encode stage -o no
+expect_fail 'a picture without a light' 1 "names no light for 'dir_7.exr', and no photograph is 'dir_77.exr'; --skip-missing" no "$RELUME" encode stage -o no
+expect_ok 'is left out when that is allowed' 'warning: stage/lights.json: left out: 1 photographs without a light, 1 lights without a photograph' "$RELUME" encode stage -o b.exr --basis table --skip-missing --force
+below 'the others are kept' "$("$RELUME" info b.exr --json >info.json && field lights info.json)" 23
 rm -f stage/*.*
 cp lights.json stage/
 
@@ -96,7 +107,7 @@ expect_fail 'too few directions' 1 'bare.txt: 2 lights; expected 24' no "$RELUME
 head -c 20000 stage.exr >short.exr
 expect_fail 'a truncated file' 1 'short.exr' no "$RELUME" encode short.exr -o no
 rm stage/olat/dir_3.exr
-expect_fail 'a picture is missing' 1 '24 lights, but 23 pictures' no "$RELUME" encode stage -o no
+expect_fail 'a picture is missing' 1 '24 lights; expected 23' no "$RELUME" encode stage -o no
 printf '[[1,0,0],[0,0,0]]' >stage/lights.json
 expect_fail 'no direction' 1 'light 1; expected three numbers' no "$RELUME" encode stage -o no
 expect_fail 'a folder' 2 '\-\-to olat writes an .exr' no "$RELUME" export t.exr --to olat -o no

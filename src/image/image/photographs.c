@@ -77,8 +77,8 @@ static void keep_beside(struct gathering *g, char *path, const char *why)
 {
     const bool lp = picture_has_extension(path, ".lp"), mask = !lp && is_named(path, "mask");
     // A list of light directions by its name.
-    const bool table = !mask && (picture_has_extension(path, ".txt") && !is_named(path, "intens") &&
-                                 !is_named(path, "pos") &&
+    const bool text = picture_has_extension(path, ".txt") || picture_has_extension(path, ".csv");
+    const bool table = !mask && (text && !is_named(path, "intens") && !is_named(path, "pos") &&
                                  (is_named(path, "light") || is_named(path, "direction")));
     const bool used = mask || (lp && g->lp++ == 0) || (table && g->tables++ == 0);
     char **const place = lp ? &g->list->lights : table ? &g->table : &g->list->mask;

@@ -456,7 +456,7 @@ static void release(struct acquisition *s)
     for (int i = 0; s->shot && i < s->shots; i++)
         relume_image_destroy(&s->shot[i].small);
     mem_free(s->shot);
-    mem_free(s->place);
+    mem_free(s->given_index);
     relume_image_destroy(&s->first);
     relume_image_destroy(&s->gain);
     relume_image_destroy(&s->grey);

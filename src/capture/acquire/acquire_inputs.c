@@ -14,7 +14,7 @@
 
 struct given {
     char *path;
-    int place;
+    int index;
 };
 
 static int by_number(const void *a, const void *b)
@@ -24,8 +24,8 @@ static int by_number(const void *a, const void *b)
 }
 
 // Sorts photographs by the numbers in their names: img2 comes before img10, whatever the shell
-// says. place[i] (or NULL) becomes where photograph i was before.
-static relume_status sort_photographs(struct relume_photographs *list, int *place)
+// says. before[i] (or NULL) becomes the former index of photograph i.
+static relume_status sort_photographs(struct relume_photographs *list, int *before)
 {
     struct given *given = mem_array((size_t)list->count, sizeof *given);
     if (!given)
@@ -35,8 +35,8 @@ static relume_status sort_photographs(struct relume_photographs *list, int *plac
     qsort(given, (size_t)list->count, sizeof *given, by_number);
     for (int i = 0; i < list->count; i++) {
         list->path[i] = given[i].path;
-        if (place)
-            place[i] = given[i].place;
+        if (before)
+            before[i] = given[i].index;
     }
     mem_free(given);
     return RELUME_OK;
@@ -68,8 +68,8 @@ static bool are_sorted(const struct relume_photographs *list,
     return true;
 }
 
-// The photographs of the object. Those that were named one by one keep their places for a list of
-// lights without names, unless these are only how a shell sorts them.
+// Lists the photographs of the object. Photographs that were named one by one keep this order for a
+// list of lights without names, unless it is the order in which a shell sorts them.
 static relume_status list_object(struct acquisition *s, const char *const *paths, int n)
 {
     struct relume_photographs *photos = &s->photographs;
@@ -81,11 +81,11 @@ static relume_status list_object(struct acquisition *s, const char *const *paths
         s->named_singly &= input_kind(paths[i], s->p.log) != INPUT_FOLDER;
     if (s->named_singly && !are_sorted(photos, strcmp) && !are_sorted(photos, strcasecmp) &&
         !are_sorted(photos, strverscmp)) {
-        s->place = mem_array((size_t)photos->count, sizeof *s->place);
-        if (!s->place)
+        s->given_index = mem_array((size_t)photos->count, sizeof *s->given_index);
+        if (!s->given_index)
             return RELUME_ENOMEM;
     }
-    return sort_photographs(photos, s->place);
+    return sort_photographs(photos, s->given_index);
 }
 
 static bool is_lp(const char *path)
@@ -106,8 +106,7 @@ static relume_status refuse_list(const struct relume_log *log, const char *const
                     path, folder ? folder - 1 : 1, folder ? path : ".", path);
 }
 
-// A list that no option names counts where it names one of the photographs, or else has a light for
-// each.
+// A list that no option names counts if it names one of the photographs, or has a light for each.
 static relume_status fits(bool *out, const struct acquisition *s, const char *path)
 {
     const int n = s->photographs.count;
@@ -158,7 +157,7 @@ static relume_status find_likely_lights(struct acquisition *s)
     return find_lights_in(s, first, length);
 }
 
-// The option that describes balls, NULL: there is none.
+// The option that describes balls, or NULL.
 static const char *ball_option(const struct relume_acquire_params *p)
 {
     return p->ball                    ? "--ball"

@@ -465,14 +465,14 @@ static bool is_lp(const char *path)
     return dot && !strcasecmp(dot, ".lp");
 }
 
-// A list without names gives its lights to photographs that were named one by one in that order,
-// else in the order of their names. order[photographs].
+// A list without names gives its lights to photographs in the order of their names, or in the order
+// of the command line. order[photographs].
 static void take_places(const struct acquisition *s, int *order)
 {
     const int n = s->photographs.count;
     const char *first = "", *last = "";
     for (int i = 0; i < n; i++) {
-        order[i] = s->place ? s->place[i] : i;
+        order[i] = s->given_index ? s->given_index[i] : i;
         first = order[i] == 0 ? path_name(s->photographs.path[i]) : first;
         last = order[i] == n - 1 ? path_name(s->photographs.path[i]) : last;
     }
@@ -481,8 +481,8 @@ static void take_places(const struct acquisition *s, int *order)
                  "%s: its lights are taken in the order %s: light 1 is that of '%.60s', light %d, "
                  "the last, that of '%.60s'",
                  s->p.lights,
-                 s->place ? "in which photographs were given" : "of the photographs' names", first,
-                 n, last);
+                 s->given_index ? "in which photographs were given" : "of the photographs' names",
+                 first, n, last);
 }
 
 // order[photographs] = light of the list, by name where the list has names; -1: none.

@@ -61,7 +61,7 @@ static const struct {
     {"altitude", COLUMN_ELEVATION},
 };
 
-// What stands before or behind the letter of an axis.
+// Words that a title adds to the letter of an axis.
 static const char *const affixes[] = {
     "",
     "l",
@@ -145,7 +145,8 @@ static void split(struct light_row *row, const struct light_line *line, char del
         light_row_fields(row, line, delimiter);
 }
 
-// Which column has which kind: at[kind] and twice[kind], -1: none. Returns how many are unknown.
+// Finds the first and second column of each kind, -1 without one. Returns the number of unknown
+// ones.
 static int sort_titles(int at[COLUMNS], int twice[COLUMNS], const struct light_row *row)
 {
     int unknown = 0;

@@ -4,7 +4,7 @@
 
 #include "capture/manifest/light_text.h"
 
-// Columns count from 0; -1: there is none.
+// Columns count from 0; -1 is a missing one.
 struct light_columns {
     bool found;
     char delimiter;  // ' ': blanks, where a name may hold blanks
@@ -18,7 +18,7 @@ struct light_columns {
 
 // Looks whether `line`, or a comment that it holds, names columns of a vector: x y z (also lx,
 // dirx, position_x), theta phi, or azimuth elevation. A comment counts only where it says more than
-// `x y z`. RELUME_EFORMAT with a sentence for two columns of one kind, or angles in radians.
+// `x y z`. RELUME_EFORMAT with a message for two columns of one kind, or angles in radians.
 relume_status light_columns_find(struct light_columns *out, const struct light_line *line,
                                  const char *path, const struct relume_log *log);
 

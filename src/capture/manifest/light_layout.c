@@ -15,7 +15,7 @@ static const double ALIKE = 0.995;  // mean of unit vectors: lights never lie wi
 static const double UNEVEN = 0.25;  // standard deviation of the lengths of positions / mean
 static const double CLEARLY = 1.5;  // times as even as the next layout
 
-// What all lines together show of one layout.
+// Sums of one layout over all lines.
 struct guess {
     struct light_layout layout;
     int fits, units, usable;

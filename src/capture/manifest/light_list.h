@@ -12,7 +12,7 @@ struct light_list {
     int count;
     struct relume_vec3 *vector;     // [count] as written
     struct relume_vec3 *direction;  // [count] unit
-    const char **name;              // [count] as written, or NULL: the list has none
+    const char **name;              // [count] as written, NULL in a list without names
     int *line;                      // [count] of the file
     bool numbered;                  // names are whole numbers, perhaps only an index
     bool angles;                    // written as angles: there are no positions
@@ -20,7 +20,7 @@ struct light_list {
 };
 
 // Reads a list. All lines together decide what their columns are (docs/capture.md, "Lists of
-// lights"). RELUME_EFORMAT, RELUME_ELIMIT with a sentence that names file and line; another input
+// lights"). RELUME_EFORMAT, RELUME_ELIMIT with a message that names file and line; another input
 // status, RELUME_ENOMEM. On failure `out` is empty.
 relume_status light_list_read(struct light_list *out, const char *path,
                               const struct relume_limits *limits, const struct relume_log *log);

@@ -26,7 +26,7 @@ const char *light_names_base(const char *path)
     return name;
 }
 
-// Where the ending of a picture begins, with its dot; the end of `name` where it has none.
+// The dot of the ending of a picture, or the end of `name`.
 static const char *picture_ending(const char *name)
 {
     static const char *const endings[] = {
@@ -120,7 +120,7 @@ static const char *skip_number(const char *name)
     return at > name && *at == ' ' ? at + strspn(at, " ") : name;
 }
 
-// What a name is compared by; "" where this tier does not look at it. NULL without memory.
+// The text by which a tier compares a name; "" leaves the name out. NULL without memory.
 static char *make_key(struct arena *arena, const char *name, enum tier tier, bool listed)
 {
     const char *base = light_names_base(name), *start = base;
@@ -265,12 +265,13 @@ relume_status light_names_pair(int *order, int *matched, const struct light_name
     relume_status status = RELUME_OK;
     for (enum tier t = 0; !status && t < TIERS && p.matched < photographs; t++)
         status = pair_tier(&p, t);
-    if (!status && list->numbered && p.matched < photographs)
+    const bool index = list->numbered && p.matched < photographs && p.matched < list->count;
+    if (!status && index)
         status = check_index(list, log);
     else if (!status && p.twice[0] >= 0)
         status = refuse_twice(&p, log);
     mem_free(p.used);
-    *matched = status || (list->numbered && p.matched < photographs) ? 0 : p.matched;
+    *matched = status || index ? 0 : p.matched;
     return status;
 }
 

@@ -4,7 +4,7 @@
 
 #include <relume/base.h>
 
-// What a list says of the names of its lights. Borrowed.
+// The names in a list of lights. Borrowed.
 struct light_names {
     const char *path;         // of the list
     int count;                // lights
@@ -13,12 +13,12 @@ struct light_names {
     bool numbered;            // the names may be an index and no names
 };
 
-// order[photographs] becomes the light of each photograph by its name, -1 where the list names
-// none. Names are compared by folder and file name, then by file name, then without its ending, and
-// then without marks on Latin letters (composed or not) or a number before the name; never by case.
-// *matched is how many photographs have a light; 0 where the list has no names.
-// RELUME_EUNFIT with a sentence where a name is listed twice, or an index does not rise and is no
-// name of photographs; RELUME_ENOMEM.
+// order[photographs] becomes the light of each photograph by its name, -1 for photographs that the
+// list does not name. Case never counts. Names are compared by folder and file name first, then by
+// file name, then without its ending. Last, marks on Latin letters (composed or not) and a number
+// in front of a name do not count. *matched is the number of photographs with a light.
+// RELUME_EUNFIT with a message if a name is listed twice, or an index neither rises nor names the
+// photographs; RELUME_ENOMEM.
 relume_status light_names_pair(int *order, int *matched, const struct light_names *list,
                                const char *const *photograph, int photographs,
                                const struct relume_log *log);
@@ -30,7 +30,7 @@ relume_status light_names_pair_all(int *order, int *matched, const struct light_
                                    const char *const *photograph, int photographs,
                                    const struct relume_log *log);
 
-// Fails with a sentence that names the first photographs without a light and the first lights
+// Fails with a message that names the first photographs without a light and the first lights
 // without a photograph; `advice` ends it. RELUME_EUNFIT.
 relume_status light_names_refuse(const struct light_names *list, const int *order,
                                  const char *const *photograph, int photographs, const char *advice,

@@ -115,7 +115,8 @@ static relume_status find_names(const struct listing *l, int *found)
     return status;
 }
 
-// found[lights] becomes the number of files where the listed path exists and is allowed, else -1.
+// found[lights] becomes the number of files where the listed path exists and is allowed, and -1
+// elsewhere.
 static relume_status find_paths(const struct listing *l, int *found)
 {
     for (int i = 0; i < l->list.count; i++) {
@@ -140,7 +141,7 @@ static relume_status refuse_outside(const struct listing *l, int light)
                     l->path, l->list.name[light]);
 }
 
-// The path itself, else its base name in the folder, else the same in the folder beside. A path
+// Tries the path itself, its base name in the folder, and the same in the folder beside. A path
 // that leaves the folder, and the project that holds it, is refused where only that exists.
 static relume_status find_files(const struct listing *l, int *missing)
 {

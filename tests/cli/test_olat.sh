@@ -13,28 +13,6 @@ for f in t back; do expect_ok "relight $f" - "$RELUME" relight $f.exr -o $f-lit.
 below 'nothing is lost' "$("$mkimage" maxdiff t-lit.exr back-lit.exr)" 1e-6
 expect_ok 'layers are shown' - "$RELUME" relight stage.exr -o lit.exr --light 'dir 0.3 0.2 1'
 
-# ---- all that encode decides: highlights are learnt from some of the lights, then from all
-"$sphere" big --size 64 --lights 24 >/dev/null && "$RELUME" encode big -o big.exr --basis table --bits half -q || exit 1
-expect_ok 'layers of 64 pixels' '24 layers' "$RELUME" export big.exr --to olat -o big-olat.exr
-expect_ok 'layers, highlights and all' 'highlights move' "$RELUME" encode big-olat.exr -o by-layers.exr
-expect_ok 'the photographs of these' 'highlights move' "$RELUME" encode big/dirs.lp -o by-files.exr
-expect_ok 'layers are judged' - "$RELUME" eval by-layers.exr big-olat.exr
-for light in 3 14; do
-    set -- $(sed -n "$((light + 2))p" big/dirs.lp)
-    for by in layers files; do
-        "$RELUME" relight by-$by.exr -o lit.exr --light "dir $2 $3 $4" -q
-        "$RELUME" compare lit.exr "big/$1" | sed -n 's/^psnr_db *//p' >$by.txt
-    done
-    # 47.1 and 38.9 dB; the layers are halves of 32-bit photographs
-    below "light $light: layers do as photographs do" "$(awk 'NR == FNR { a = $1; next } { d = a - $1; print d < 0 ? -d : d }' layers.txt files.txt)" 0.5
-    check "light $light: and well" test "$(sed 's/[.].*//' layers.txt)" -ge 37
-done
-head -c -1000 big-olat.exr >cut.exr
-expect_fail 'layers cut short' 1 'cut.exr: truncated or damaged' no.exr "$RELUME" encode cut.exr -o no.exr
-"$sphere" masked --size 64 --lights 24 --mask >/dev/null && "$RELUME" encode masked -o masked.exr -q || exit 1
-expect_ok 'layers of a masked capture' '24 layers' "$RELUME" export masked.exr --to olat -o masked-olat.exr
-expect_ok 'become a file' - "$RELUME" encode masked-olat.exr -o by-layers.exr -q
-
 # ---- weights: the pictures under the captured lights add up to that under the environment
 printf 'P6 8 4 255 ' >sky.ppm
 awk 'BEGIN { for (i = 0; i < 32; i++) printf "%c%c%c", 40 + i * 5, 60 + i % 8 * 20, 90 + i * 2 }' | LC_ALL=C tr -d '\0' >>sky.ppm
@@ -78,7 +56,7 @@ expect_ok 'a stage' - "$RELUME" encode stage -o a.exr --basis table --bits half 
 expect_ok 'from the capture' - "$RELUME" encode cap -o c.exr --basis table --bits half -q
 for f in a c; do "$RELUME" relight $f.exr -o $f-lit.exr --light 'dir 0.3 0.2 1'; done
 below 'is the capture' "$("$mkimage" maxdiff a-lit.exr c-lit.exr)" 1e-6
-awk 'BEGIN { print "name,x,y,z" } { printf "l%d,%s,%s,%s\n", NR, $1, $2, $3 }' stage/light_dirs.txt >lights.csv
+awk 'BEGIN { print "name,x,y,z" } { printf "dir_%d,%s,%s,%s\n", NR - 1, $1, $2, $3 }' stage/light_dirs.txt >lights.csv
 awk 'BEGIN { printf "[" } { printf "%s[%s, %s, %s]", (NR > 1 ? ", " : ""), $1, $2, $3 } END { print "]" }' stage/light_dirs.txt >lights.json
 for list in lights.csv lights.json; do
     rm -f stage/*.*
@@ -87,17 +65,24 @@ for list in lights.csv lights.json; do
     same "$list says the same" a.exr b.exr
 done
 
-# lists that name their pictures, in another order; with a name that is none
+# Tables that name their pictures, in another order; that name others
 rm -f stage/*.*
-awk '{ line[NR] = sprintf("dir_%d,%s,%s,%s", NR - 1, $1, $2, $3) } END { print "name,x,y,z"; for (i = NR; i > 0; i--) print line[i] }' places.txt >stage/lights.csv
+{ head -n 1 lights.csv; sed 1d lights.csv | sort -r; } >stage/lights.csv
 expect_ok 'a table by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
-same 'a table says the same in any order' a.exr b.exr
+same 'its order does not matter' a.exr b.exr
+sed 's/dir_/l/' lights.csv >stage/lights.csv
+expect_ok 'a table of other names' 'warning: stage/lights.csv: none of the listed images exists' "$RELUME" encode stage -o b.exr --basis table --bits half
+same 'its lights are taken in order' a.exr b.exr
+
+# JSON that names its pictures, in another order; with a name that is none
 rm -f stage/*.*
 awk '{ line[NR] = sprintf("{\"name\": \"dir_%d.exr\", \"direction\": [%s, %s, %s]}", NR - 1, $1, $2, $3) } END { printf "["; for (i = NR; i > 0; i--) printf "%s%s", line[i], (i > 1 ? ", " : "]\n") }' places.txt >stage/lights.json
 expect_ok 'a list by name' - "$RELUME" encode stage -o b.exr --basis table --bits half -q
 same 'says the same in any order' a.exr b.exr
 sed -i 's/dir_7\./dir_77./' stage/lights.json
-expect_fail 'a picture without a light' 1 "names no light 'dir_7.exr'" no "$RELUME" encode stage -o no
+expect_fail 'a picture without a light' 1 "names no light for 'dir_7.exr', and no photograph is 'dir_77.exr'; --skip-missing" no "$RELUME" encode stage -o no
+expect_ok 'is left out when that is allowed' 'warning: stage/lights.json: left out: 1 photographs without a light, 1 lights without a photograph' "$RELUME" encode stage -o b.exr --basis table --skip-missing --force
+below 'the others are kept' "$("$RELUME" info b.exr --json >info.json && field lights info.json)" 23
 rm -f stage/*.*
 cp lights.json stage/
 
@@ -119,18 +104,10 @@ rm -f light*.*
 expect_fail 'no directions' 1 'bare.exr: 24 layers, but no directions' no "$RELUME" encode bare.exr -o no
 printf '1 0 1\n0 1 1\n' >bare.txt
 expect_fail 'too few directions' 1 'bare.txt: 2 lights; expected 24' no "$RELUME" encode bare.exr -o no
-awk '{ printf "light%04d %s %s %s\n", 23 - (NR - 1), $1, $2, $3 }' places.txt >bare.txt
-"$RELUME" encode bare.exr -o turned.exr --basis table -q
-tac bare.txt >bare.new && mv bare.new bare.txt
-expect_ok 'lines by name' - "$RELUME" encode bare.exr -o bare-lit.exr --basis table -q
-same 'lines of layers in any order' turned.exr bare-lit.exr
-sed -i 's/light0004/light0099/' bare.txt
-expect_fail 'a layer without a light' 1 "names no light 'light0004'" no "$RELUME" encode bare.exr -o no
-rm bare.txt
 head -c 20000 stage.exr >short.exr
 expect_fail 'a truncated file' 1 'short.exr' no "$RELUME" encode short.exr -o no
 rm stage/olat/dir_3.exr
-expect_fail 'a picture is missing' 1 '24 lights, but 23 pictures' no "$RELUME" encode stage -o no
+expect_fail 'a picture is missing' 1 '24 lights; expected 23' no "$RELUME" encode stage -o no
 printf '[[1,0,0],[0,0,0]]' >stage/lights.json
 expect_fail 'no direction' 1 'light 1; expected three numbers' no "$RELUME" encode stage -o no
 expect_fail 'a folder' 2 '\-\-to olat writes an .exr' no "$RELUME" export t.exr --to olat -o no

@@ -2,9 +2,11 @@
 // COLMAP's poses, exposure times, and names that hold a camera's place
 #include "fuzz.h"
 
+#include "capture/manifest/light_names.h"
 #include "capture/multiview/views.h"
 #include "capture/multiview/views_colmap.h"
 #include "cli/commands/capture_times.c"
+#include "core/math/vec.h"
 
 #include <relume/image/directions.h>
 #include <relume/image/response.h>
@@ -43,8 +45,34 @@ static const char *const words[] = {"lightConfiguration",
                                     "*",
                                     "1/60",
                                     "IMG_1.jpg",
+                                    "name,x,y,z\n",
+                                    "theta;phi;image\n",
+                                    "// ",
+                                    ",",
+                                    ";",
+                                    "\t",
+                                    "\r",
+                                    "\"",
+                                    "0,6",
+                                    "\xc3\xa9",
+                                    "e\xcc\x81",
+                                    "\xff\xfe",
+                                    "\\",
                                     NULL};
 static const char *const parts[] = {"cameras.txt", "images.txt", "points3D.txt"};
+
+// A list that names every photograph once gives each the light of its name.
+static void try_pairs(const struct relume_captured_lights *list)
+{
+    const struct light_names names = {
+        .path = "list", .count = list->count, .name = (const char *const *)list->name};
+    int *order = calloc((size_t)list->count, sizeof *order), matched;
+    if (order && !light_names_pair(order, &matched, &names, names.name, list->count, NULL))
+        for (int i = 0; i < list->count; i++)
+            if (order[i] < -1 || order[i] >= list->count)
+                abort();
+    free(order);
+}
 
 static bool try_lights(const char *path)
 {
@@ -54,7 +82,12 @@ static bool try_lights(const char *path)
         const relume_status status = relume_captured_lights_load(&list, path, positions, NULL);
         if (!status && list.count < 1)
             abort();
+        for (int i = 0; i < list.count; i++)
+            if (!(fabs(vec3_length(list.direction[i]) - 1.0) < 1e-9))
+                abort();
         read |= !status;
+        if (!status && list.name)
+            try_pairs(&list);
         relume_captured_lights_destroy(&list);
     }
     return read;
@@ -179,6 +212,15 @@ int main(int argc, char **argv)
                   "[{\"r\":1,\"g\":1,\"b\":1},{\"r\":2,\"g\":1,\"b\":0.5}]}"));
     fuzz_add(&f, text("{\"lightConfiguration\":\"directional\",\"directions\":[[0,0,1],[1,0,1]]}"));
     fuzz_add(&f, text("2\na.jpg 0 0 1\nb.jpg 1 0 2\n"));
+    fuzz_add(&f, text("file;z;y;x\n\"a b.jpg\";0,8;0;0,6\nc.jpg;1;0;0\n"));
+    fuzz_add(&f, text("# azimuth elevation\r\ncaf\xc3\xa9.jpg 30 40\r\nx 50 60 // x\r\n"));
+    fuzz_add(&f, text("000,0.349,0.899,0.265\n001,-.6,0,.8\n002,0,.6,.8\n"));
+    fuzz_add(&f, text("IMG 1.jpg -.6 0 .8 800 left\nIMG 2.jpg 0 .6 .8 800\nb\\c.jpg .8 0 .6 1\n"));
+    fuzz_add(&f, (struct bytes){(uint8_t *)memcpy(calloc(1, 32),
+                                                  "\xff\xfe"
+                                                  "a\0 \0000\0 \0000\0 \0001\0",
+                                                  16),
+                                16});
     fuzz_add(&f, text("1 PINHOLE 64 48 70 70 32 24\n2 OPENCV 64 48 70 70 32 24 .1 0 .01 0\n\f"
                       "# id q t camera name\n1 1 0 0 0 0 0 3 1 a b.jpg\n3 4 7 5 6 -1\n"
                       "2 .7 0 .7 0 1 0 3 2 c.jpg\n\n\f1 0.5 0.5 1 9 9 9 0.1 1 0\n"));

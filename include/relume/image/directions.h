@@ -53,16 +53,16 @@ struct relume_captured_lights {
     struct relume_vec3 *direction;  // [count], unit, in the order of the file
     struct relume_vec3 *position;   // [count], world units, or NULL: only directions are given
     float (*intensity)[3];          // [count], or NULL: all 1
-    char **name;                    // [count], or NULL: the file does not name all (lists only)
+    char **name;                    // [count], or NULL: the file does not name all
 };
 
-// Read lights from a capture.json or the JSON of `relume lights`, a .dome file (RelightLab: mm from
-// the middle of the picture become world units by its imageWidth, which is 2 world units wide; an
-// LED that is multiplied by its ledAdjust has the intensity 1 / ledAdjust), a .lp file, or lines
-// `[name] x y z` ('#' starts a comment, a lone count may come first). With `positions` the vectors
-// of lines and .lp files are positions in world units, and a file that gives none is an error.
-// Images that a file names need not exist. The caller destroys `out`, which is empty on failure.
-// An input status, RELUME_ENOMEM.
+// Reads lights from a capture.json, the JSON of `relume lights`, a .dome file or a text. A .dome
+// file (RelightLab) holds mm from the middle of the picture, which become world units by its
+// imageWidth, 2 world units. An LED that is multiplied by its ledAdjust has the intensity 1 /
+// ledAdjust. A text is a .lp file, lines `[name] x y z`, or a table (docs/capture.md, "Lists of
+// lights"). With `positions` the vectors of texts are positions in world units, and a file that
+// gives none is an error. Images that a file names need not exist. The caller destroys `out`, which
+// is empty on failure. An input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_captured_lights_load(struct relume_captured_lights *out,
                                                         const char *path, bool positions,
                                                         const struct relume_log *log);

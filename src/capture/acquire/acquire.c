@@ -460,6 +460,7 @@ static void release(struct acquisition *s)
         relume_image_destroy(&s->shot[i].luma);
     }
     mem_free(s->shot);
+    mem_free(s->given_index);
     relume_image_destroy(&s->first);
     relume_image_destroy(&s->gain);
     relume_image_destroy(&s->grey);

@@ -55,6 +55,9 @@ struct alike {
 struct acquisition {
     struct relume_acquire_params p;  // masks and lights as they were found
     struct relume_photographs photographs, balls, flats;
+    bool named_singly;         // the photographs were named one by one
+    int *given_index;          // [photographs.count] on the command line, or NULL where names are
+                               // given in the order in which a shell sorts them
     char likely_lights[4096];  // a file that may be meant as lights: where no ball is found the
                                // sentence names it; "": none
     struct relume_acquisition *out;

@@ -3,12 +3,11 @@
 #include "capture/acquire/acquire.h"
 
 #include "capture/acquire/ball.h"
-#include "capture/manifest/manifest.h"
+#include "capture/manifest/loaded_lights.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "image/image/photograph.h"
 
-#include <relume/image/directions.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -471,52 +470,67 @@ static bool is_lp(const char *path)
     return dot && !strcasecmp(dot, ".lp");
 }
 
-static int find_name(const struct draft *lp, const char *path)
+// A list without names gives its lights to photographs in the order of their names, or in the order
+// of the command line. order[photographs].
+static void take_places(const struct acquisition *s, int *order)
 {
-    for (int i = 0; i < lp->m.lights; i++) {
-        const char *listed = strrchr(lp->view[0].images[i], '\\');
-        listed = listed ? listed + 1 : path_name(lp->view[0].images[i]);
-        if (!strcasecmp(listed, path_name(path)))
-            return i;
+    const int n = s->photographs.count;
+    const char *first = "", *last = "";
+    for (int i = 0; i < n; i++) {
+        order[i] = s->given_index ? s->given_index[i] : i;
+        first = order[i] == 0 ? path_name(s->photographs.path[i]) : first;
+        last = order[i] == n - 1 ? path_name(s->photographs.path[i]) : last;
     }
-    return -1;
+    if (s->named_singly)
+        log_line(s->p.log, RELUME_NOTE,
+                 "%s: its lights are taken in the order %s: light 1 is that of '%.60s', light %d, "
+                 "the last, that of '%.60s'",
+                 s->p.lights,
+                 s->given_index ? "in which photographs were given" : "of the photographs' names",
+                 first, n, last);
 }
 
-// order[shot] = line of the .lp file by name; as they were given when none of the names is known.
-static relume_status match_names(struct acquisition *s, int *order, bool *matched)
+// order[photographs] = light of the list, by name where the list has names; -1: none.
+static relume_status pair_photographs(const struct acquisition *s, const struct loaded_lights *list,
+                                      int *order, bool *by_name)
 {
-    struct draft lp;
-    relume_status status = lp_read(&lp, s->p.lights, s->p.limits, s->p.log);
-    const char *missing = NULL;
-    *matched = false;
-    for (int i = 0; !status && i < s->shots; i++) {
-        order[i] = find_name(&lp, s->shot[i].path);
-        *matched |= order[i] >= 0;
-        if (order[i] < 0 && !missing)
-            missing = s->shot[i].path;
-    }
-    draft_free(&lp);
-    for (int i = 0; !*matched && i < s->shots; i++)
-        order[i] = s->shot[i].number;
-    if (!status && *matched && missing)
-        status = log_fail(s->p.log, RELUME_EUNFIT,
-                          "%s: does not list '%s'; expected a line for every photograph",
-                          s->p.lights, path_name(missing));
+    const struct light_names names = loaded_lights_names(list, s->p.lights);
+    const char *const *photographs = (const char *const *)s->photographs.path;
+    const int n = s->photographs.count;
+    int matched;
+    const relume_status status =
+        light_names_pair_all(order, &matched, &names, photographs, n, s->p.log);
+    *by_name = matched > 0;
+    if (!status && !matched)
+        take_places(s, order);
+    if (!status && matched && matched < n && !s->p.skip_bad)
+        return light_names_refuse(&names, order, photographs, n,
+                                  "--skip-bad leaves out photographs without a light", s->p.log);
     return status;
 }
 
-// `order` says which light of the list is that of a shot.
-static void take_lights(struct acquisition *s, const struct relume_captured_lights *list,
-                        const int *order)
+static void take_light(struct shot *shot, const struct relume_captured_lights *list, int k)
 {
-    for (int i = 0; i < s->shots; i++) {
-        const int k = order[i];
-        s->shot[i].direction = list->direction[k];
-        s->shot[i].position = list->position ? list->position[k] : list->direction[k];
-        for (int c = 0; c < 3; c++)
-            s->shot[i].intensity[c] = list->intensity ? list->intensity[k][c] : 1.0f;
+    shot->direction = list->direction[k];
+    shot->position = list->position ? list->position[k] : list->direction[k];
+    for (int c = 0; c < 3; c++)
+        shot->intensity[c] = list->intensity ? list->intensity[k][c] : 1.0f;
+}
+
+// order[photographs] says which light of the list is that of a photograph.
+static relume_status take_lights(struct acquisition *s, const struct relume_captured_lights *list,
+                                 const int *order)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < s->shots;) {
+        const int k = order[s->shot[i].number];
+        if (k >= 0)
+            take_light(&s->shot[i++], list, k);
+        else
+            status = acquire_drop(s, i, "%s names no light for it", s->p.lights);
     }
     s->has_intensities = list->intensity != NULL;
+    return status;
 }
 
 // Directions that came with the files of the photographs are those of the picture as it lies there.
@@ -537,27 +551,33 @@ static void turn_lights(struct acquisition *s)
                  s->p.lights, s->orientation);
 }
 
+// Positions look like directions that are not of unit length.
+static void mention_near(const struct acquisition *s, const struct loaded_lights *list)
+{
+    if (!s->p.near && (!list->unit || strcasestr(path_name(s->p.lights), "position")))
+        log_line(s->p.log, RELUME_NOTE,
+                 "%s: is read as light directions; add --near where it holds the positions of "
+                 "lamps",
+                 s->p.lights);
+}
+
 static relume_status lights_from_file(struct acquisition *s)
 {
-    struct relume_captured_lights list = {0};
-    bool matched = false;
-    int *order = mem_array((size_t)s->shots, sizeof *order);
-    relume_status status = order ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < s->shots; i++)
-        order[i] = s->shot[i].number;
+    struct loaded_lights list = {0};
+    bool by_name = false;
+    int *order = mem_array((size_t)s->photographs.count, sizeof *order);
+    relume_status status =
+        order ? loaded_lights_load(&list, s->p.lights, s->p.near, s->p.log) : RELUME_ENOMEM;
     if (!status)
-        status = relume_captured_lights_load(&list, s->p.lights, s->p.near, s->p.log);
-    if (!status && is_lp(s->p.lights))
-        status = match_names(s, order, &matched);
-    if (!status && !matched && list.count != s->photographs.count)
-        status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d light%s; expected %d as photographs",
-                          s->p.lights, list.count, relume_plural(list.count), s->photographs.count);
+        status = pair_photographs(s, &list, order, &by_name);
     if (!status)
-        take_lights(s, &list, order);
-    if (!status && matched)
+        status = take_lights(s, &list.lights, order);
+    if (!status && by_name && is_lp(s->p.lights))
         turn_lights(s);
+    if (!status)
+        mention_near(s, &list);
     mem_free(order);
-    relume_captured_lights_destroy(&list);
+    loaded_lights_free(&list);
     return status;
 }
 

@@ -34,7 +34,7 @@ relume_status olat_open(relume_capture **out, const char *path,
                         const struct relume_capture_params *p);
 bool olat_is_folder(const char *folder, const struct relume_log *log);
 relume_status olat_read_folder(struct draft *out, char **path, const char *folder,
-                               const struct relume_log *log);
+                               const struct relume_capture_params *p);
 
 // What opening a capture does after its manifest is known: its images are looked at, defaults
 // filled in. Frees `c` on failure.

@@ -1,54 +1,28 @@
 // lights_read.c - lights from whatever file holds some
+#include "capture/manifest/light_list.h"
+#include "capture/manifest/loaded_lights.h"
 #include "capture/manifest/manifest.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
-#include "image/image/picture_kind.h"
 
 #include <errno.h>
 #include <relume/image/directions.h>
 #include <stdio.h>
 #include <string.h>
 
-enum kind { KIND_LINES, KIND_LP, KIND_JSON };
-
-// The first line that says something, without blanks and comments before it; "" at the end.
-static const char *next_line(char line[256], FILE *file)
-{
-    while (fgets(line, 256, file)) {
-        const char *start = line + strspn(line, " \t\r\n\xef\xbb\xbf");
-        if (*start && *start != '#')
-            return start;
-    }
-    return "";
-}
-
-static bool is_count(const char *line)
-{
-    double number;
-    char rest;
-    return sscanf(line, " %lf %c", &number, &rest) == 1;
-}
-
-// JSON starts with a brace, a .lp file with a lone count before lines that start with names.
-static relume_status look(enum kind *kind, const char *path, const struct relume_log *log)
+// JSON starts with a brace or a bracket, perhaps behind comments and blank lines.
+static relume_status look(bool *json, const char *path, const struct relume_log *log)
 {
     FILE *file = input_open(path, log);
+    char line[256];
+    const char *start = "";
     if (!file)
         return relume_input_fail(log, path, "cannot be opened", errno);
-    char line[256];
-    double v[3];
-    const char *start = next_line(line, file);
-    const bool some = *start;
-    *kind = *start == '{' || *start == '[' ? KIND_JSON : KIND_LINES;
-    if (is_count(start)) {
-        start = next_line(line, file);
-        if (sscanf(start, "%lf%*[ \t,]%lf%*[ \t,]%lf", &v[0], &v[1], &v[2]) != 3)
-            *kind = KIND_LP;
-    }
+    while ((!*start || *start == '#') && fgets(line, sizeof line, file))
+        start = line + strspn(line, " \t\r\n\xef\xbb\xbf");
+    *json = *start == '{' || *start == '[';
     fclose(file);
-    if (!some)
-        return log_fail(log, RELUME_EFORMAT, "%s: no light directions; expected lines x y z", path);
     return RELUME_OK;
 }
 
@@ -108,127 +82,38 @@ static relume_status from_json(struct relume_captured_lights *out, const char *p
     return status;
 }
 
-static relume_status from_lp(struct relume_captured_lights *out, const char *path,
-                             const struct relume_log *log)
+// The names of a list; false without memory.
+static bool copy_names(struct relume_captured_lights *out, const struct light_list *list)
 {
-    struct draft draft = {0};
-    relume_status status = lp_read(&draft, path, NULL, log);
+    if (!list->name)
+        return true;
+    out->name = mem_zeroed((size_t)list->count, sizeof *out->name);
+    for (int i = 0; out->name && i < list->count; i++)
+        if (!(out->name[i] = mem_text(list->name[i])))
+            return false;
+    return out->name != NULL;
+}
+
+static relume_status from_text(struct loaded_lights *out, const char *path, bool positions,
+                               const struct relume_log *log)
+{
+    struct relume_captured_lights *lights = &out->lights;
+    struct light_list list;
+    relume_status status = light_list_read(&list, path, NULL, log);
     if (!status) {
-        const size_t n = (size_t)draft.m.lights;
-        out->count = draft.m.lights;
-        out->direction = mem_copy(draft.directions, n, sizeof *out->direction);
-        out->position = mem_copy(draft.positions, n, sizeof *out->position);
-        status = out->direction && out->position ? RELUME_OK : RELUME_ENOMEM;
+        const size_t n = (size_t)list.count;
+        const bool places = positions && !list.angles;
+        lights->count = list.count;
+        lights->direction = mem_copy(list.direction, n, sizeof *lights->direction);
+        lights->position = places ? mem_copy(list.vector, n, sizeof *lights->position) : NULL;
+        out->line = mem_copy(list.line, n, sizeof *out->line);
+        out->numbered = list.numbered;
+        out->unit = list.unit;
+        if (!lights->direction || (places && !lights->position) || !out->line ||
+            !copy_names(lights, &list))
+            status = RELUME_ENOMEM;
     }
-    draft_free(&draft);
-    return status;
-}
-
-enum { NAME = 256 };
-
-// 1: a vector, perhaps behind a name; 0: a blank line or a comment; -1: neither.
-static int parse_line(char *line, struct relume_vec3 *v, char name[NAME])
-{
-    char rest;
-    *name = '\0';
-    line[strcspn(line, "#\r\n")] = '\0';
-    if (!line[strspn(line, " \t")])
-        return 0;
-    if (sscanf(line, "%lf%*[ \t,]%lf%*[ \t,]%lf %c", &v->x, &v->y, &v->z, &rest) == 3)
-        return 1;
-    return sscanf(line, "%255s %lf%*[ \t,]%lf%*[ \t,]%lf %c", name, &v->x, &v->y, &v->z, &rest) ==
-                       4 &&
-                   !is_count(name)
-               ? 1
-               : -1;
-}
-
-// A line of a table, "light0001,0.1,0.2,0.9,..." or without the name; the same of its numbers.
-static int parse_row(const char *line, struct relume_vec3 *v, char name[NAME])
-{
-    double first;
-    const char *comma = strchr(line, ',');
-    *name = '\0';
-    if (!line[strspn(line, " \t\r\n")])
-        return 0;
-    if (sscanf(line, "%lf , %lf , %lf", &v->x, &v->y, &v->z) == 3)
-        return 1;
-    snprintf(name, NAME, "%.*s", comma ? (int)(comma - line) : 0, line);
-    return comma && sscanf(line, "%lf ,", &first) != 1 &&
-                   sscanf(comma + 1, "%lf , %lf , %lf", &v->x, &v->y, &v->z) == 3
-               ? 1
-               : -1;
-}
-
-// Names count where all lights have one.
-static void keep_names(struct relume_captured_lights *out)
-{
-    int named = 0;
-    while (named < out->count && out->name[named])
-        named++;
-    for (int i = 0; named < out->count && i < out->count; i++)
-        mem_free(out->name[i]);
-    if (named < out->count) {
-        mem_free(out->name);
-        out->name = NULL;
-    }
-}
-
-static relume_status read_lines(struct relume_captured_lights *out, FILE *file, const char *path,
-                                const struct relume_log *log)
-{
-    const int most = limits_or_default(NULL).max_lights;
-    char line[512], name[NAME];
-    double stated = 0.0;
-    bool first = true;
-    const bool table = picture_has_extension(path, ".csv");
-    out->direction = mem_array((size_t)most, sizeof *out->direction);
-    out->position = mem_array((size_t)most, sizeof *out->position);
-    out->name = mem_zeroed((size_t)most, sizeof *out->name);
-    if (!out->direction || !out->position || !out->name)
-        return RELUME_ENOMEM;
-    for (int number = 1; fgets(line, sizeof line, file); number++) {
-        struct relume_vec3 v;
-        const bool count = first && is_count(line);
-        if (count)
-            stated = atof(line);
-        int found = count ? 0 : table ? parse_row(line, &v, name) : parse_line(line, &v, name);
-        if (found < 0 && table && first)  // what the columns are called
-            found = 0, first = false;
-        first &= !count && !found;
-        if (!found)
-            continue;
-        struct relume_vec3 unit = v;
-        if (found < 0 || !direction_normalise(&unit))
-            return log_fail(log, RELUME_EFORMAT,
-                            "%s: line %d; expected three numbers x y z, not all 0; found '%.40s'",
-                            path, number, line);
-        if (out->count == most)
-            return log_fail(log, RELUME_ELIMIT, "%s: too many lights; expected at most %d", path,
-                            most);
-        if (*name && !(out->name[out->count] = mem_text(name)))
-            return RELUME_ENOMEM;
-        out->direction[out->count] = unit;
-        out->position[out->count++] = v;
-    }
-    keep_names(out);
-    if (stated > 0.0 && out->count && stated != out->count)
-        log_line(log, RELUME_WARNING,
-                 "%s: its first line promises %g lights; found %d, which are used", path, stated,
-                 out->count);
-    return out->count ? RELUME_OK
-                      : log_fail(log, RELUME_EFORMAT,
-                                 "%s: no light directions; expected lines x y z", path);
-}
-
-static relume_status from_lines(struct relume_captured_lights *out, const char *path,
-                                const struct relume_log *log)
-{
-    FILE *file = input_open(path, log);
-    if (!file)
-        return relume_input_fail(log, path, "cannot be opened", errno);
-    const relume_status status = read_lines(out, file, path, log);
-    fclose(file);
+    light_list_free(&list);
     return status;
 }
 
@@ -243,29 +128,45 @@ void relume_captured_lights_destroy(struct relume_captured_lights *list)
     *list = (struct relume_captured_lights){0};
 }
 
-relume_status relume_captured_lights_load(struct relume_captured_lights *out, const char *path,
-                                          bool positions, const struct relume_log *log)
+void loaded_lights_free(struct loaded_lights *list)
 {
-    static relume_status (*const read[])(struct relume_captured_lights *, const char *,
-                                         const struct relume_log *) = {
-        [KIND_LINES] = from_lines,
-        [KIND_LP] = from_lp,
-        [KIND_JSON] = from_json,
-    };
-    *out = (struct relume_captured_lights){0};
-    enum kind kind;
-    relume_status status = look(&kind, path, log);
+    mem_free(list->line);
+    relume_captured_lights_destroy(&list->lights);
+    *list = (struct loaded_lights){0};
+}
+
+struct light_names loaded_lights_names(const struct loaded_lights *list, const char *path)
+{
+    return (struct light_names){.path = path,
+                                .count = list->lights.count,
+                                .name = (const char *const *)list->lights.name,
+                                .line = list->line,
+                                .numbered = list->numbered};
+}
+
+relume_status loaded_lights_load(struct loaded_lights *out, const char *path, bool positions,
+                                 const struct relume_log *log)
+{
+    bool json;
+    *out = (struct loaded_lights){.unit = true};
+    relume_status status = look(&json, path, log);
     if (!status)
-        status = read[kind](out, path, log);
-    if (!status && kind != KIND_JSON && !positions) {
-        mem_free(out->position);
-        out->position = NULL;
-    }
-    if (!status && positions && !out->position)
+        status = json ? from_json(&out->lights, path, log) : from_text(out, path, positions, log);
+    if (!status && positions && !out->lights.position)
         status = log_fail(log, RELUME_EUNFIT,
                           "%s: holds directions only; expected positions of near lights", path);
     if (status)
-        relume_captured_lights_destroy(out);
+        loaded_lights_free(out);
+    return status;
+}
+
+relume_status relume_captured_lights_load(struct relume_captured_lights *out, const char *path,
+                                          bool positions, const struct relume_log *log)
+{
+    struct loaded_lights list;
+    const relume_status status = loaded_lights_load(&list, path, positions, log);
+    *out = list.lights;
+    mem_free(list.line);
     return status;
 }
 

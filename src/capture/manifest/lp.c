@@ -1,4 +1,6 @@
-// lp.c - the light position files of RTI: a count, which some leave out, then "name x y z" a line
+// lp.c - a list of lights that names its photographs (a .lp file of RTI) as a capture
+#include "capture/manifest/light_list.h"
+#include "capture/manifest/light_names.h"
 #include "capture/manifest/manifest.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
@@ -8,6 +10,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <libgen.h>
+#include <relume/image/photograph.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -28,195 +31,23 @@ bool direction_normalise(struct relume_vec3 *v)
     return true;
 }
 
-// ---------------------------------------------------------------- text
-
-static char *trim(char *text)
-{
-    text += strspn(text, " \t\r\v\f");
-    size_t n = strlen(text);
-    while (n && strchr(" \t\r\v\f", text[n - 1]))
-        text[--n] = '\0';
-    return text;
-}
-
-// Cut the last blank-separated word off `text`; NULL when there is none.
-static char *cut_last(char *text)
-{
-    char *word = text + strlen(text);
-    while (word > text && !strchr(" \t", word[-1]))
-        word--;
-    if (!*word)
-        return NULL;
-    char *end = word;
-    while (end > text && strchr(" \t", end[-1]))
-        end--;
-    if (end == text)  // the word is all there is: leave an empty name
-        return NULL;
-    *end = '\0';
-    return word;
-}
-
-// Hand-made files hold decimal commas.
-static bool parse_number(char *word, double *out)
-{
-    char *comma = strchr(word, ',');
-    if (comma && !strchr(comma + 1, ','))
-        *comma = '.';
-    char *end;
-    *out = strtod(word, &end);
-    return end != word && !*end;
-}
-
-static bool parse_light(char *line, const char **name, struct relume_vec3 *v)
-{
-    double xyz[3];
-    for (int i = 2; i >= 0; i--) {
-        char *word = cut_last(line);
-        if (!word || !parse_number(word, &xyz[i]))
-            return false;
-    }
-    *name = line;
-    *v = vec3_of(xyz[0], xyz[1], xyz[2]);
-    return true;
-}
-
-static relume_status read_text(char **out, const char *path, const struct relume_log *log)
-{
-    enum { MOST = 64 << 20 };
-    *out = NULL;
-    FILE *file = input_open(path, log);
-    if (!file)
-        return relume_input_fail(log, path, "cannot be opened", errno);
-    char *text = NULL;
-    size_t size = 0;
-    FILE *memory = open_memstream(&text, &size);
-    char block[65536];
-    size_t n;
-    while (memory && size < MOST && (n = fread(block, 1, sizeof block, file)) > 0) {
-        fwrite(block, 1, n, memory);
-        fflush(memory);
-    }
-    const bool failed = ferror(file);
-    fclose(file);
-    if (!memory || fclose(memory)) {
-        mem_free_libc(text);
-        return RELUME_ENOMEM;
-    }
-    relume_status status = RELUME_OK;
-    if (failed)
-        status = log_fail(log, RELUME_ENOTFOUND, "%s: cannot be read; expected a text file", path);
-    else if (size >= MOST || memchr(text, '\0', size))
-        status = log_fail(log, RELUME_EFORMAT, "%s: not a text file; expected a .lp file", path);
-    if (status) {
-        mem_free_libc(text);
-        return status;
-    }
-    *out = mem_take(text);
-    return *out ? RELUME_OK : RELUME_ENOMEM;
-}
-
-// Whether a line is the count and nothing else.
-static bool parse_count(const char *line, long *out)
-{
-    char *end;
-    *out = strtol(line, &end, 10);
-    return end != line && !*end && *out > 0;
-}
-
-static relume_status parse_lines(struct draft *d, char *text, const char *path,
-                                 const struct relume_limits *limits, const struct relume_log *log)
-{
-    int most = 1;
-    for (const char *c = text; *c; c++)
-        most += *c == '\n';
-    d->directions = arena_array(&d->arena, (size_t)most, sizeof *d->directions);
-    d->positions = arena_array(&d->arena, (size_t)most, sizeof *d->positions);
-    const char **images = arena_array(&d->arena, (size_t)most, sizeof *images);
-    d->view = arena_array(&d->arena, 1, sizeof *d->view);
-    if (!d->directions || !d->positions || !images || !d->view)
-        return RELUME_ENOMEM;
-
-    long stated = 0;
-    int n = 0, number = 0, filled = 0;
-    char *save = NULL;
-    for (char *line = text; line; line = save) {
-        save = strchr(line, '\n');
-        if (save)
-            *save++ = '\0';
-        number++;
-        line = trim(line);
-        if (!*line)
-            continue;
-        if (!filled++ && parse_count(line, &stated))
-            continue;
-        const char *name;
-        struct relume_vec3 v;
-        char shown[64];
-        snprintf(shown, sizeof shown, "%s", line);
-        if (!parse_light(line, &name, &v))
-            return log_fail(log, RELUME_EFORMAT,
-                            "%s: line %d; expected %s'image x y z', found '%s'", path, number,
-                            filled == 1 ? "the number of lights or " : "", shown);
-        d->positions[n] = v;
-        if (!direction_normalise(&v))
-            return log_fail(log, RELUME_EFORMAT,
-                            "%s: line %d; expected a light direction, found '%s' (zero or not a "
-                            "number)",
-                            path, number, shown);
-        d->directions[n] = v;
-        images[n] = arena_text(&d->arena, name);
-        if (!images[n++])
-            return RELUME_ENOMEM;
-    }
-    if (n == 0)
-        return log_fail(log, RELUME_EFORMAT,
-                        "%s: no lights; expected a count and 'image x y z' lines", path);
-    if (n > limits_or_default(limits).max_lights)
-        return log_fail(log, RELUME_ELIMIT, "%s: %d lights; expected at most %d", path, n,
-                        limits_or_default(limits).max_lights);
-    if (filled > n && stated != n)
-        log_line(log, RELUME_WARNING,
-                 "%s: its first line promises %ld lights; found %d, which are used", path, stated,
-                 n);
-    d->view[0].images = images;
-    d->m = (struct relume_manifest){
-        .geometry = relume_geometry_default(RELUME_PLANAR, 1, 1),
-        .lights = n,
-        .directions = d->directions,
-        .views = 1,
-        .view = d->view,
-    };
-    return RELUME_OK;
-}
-
-relume_status lp_read(struct draft *out, const char *path, const struct relume_limits *limits,
-                      const struct relume_log *log)
-{
-    *out = (struct draft){0};
-    char *text;
-    relume_status status = read_text(&text, path, log);
-    if (status)
-        return status;
-    const bool has_bom = !strncmp(text, "\xef\xbb\xbf", 3);
-    status = parse_lines(out, text + (has_bom ? 3 : 0), path, limits, log);
-    mem_free(text);
-    if (status)
-        draft_free(out);
-    return status;
-}
+// A list, and the folder that it lies in.
+struct listing {
+    struct draft *d;
+    struct light_list list;
+    const char *path;
+    char *folder;
+    struct dirent **files;  // pictures in the folder, in the order of their names
+    int file_count;
+    bool project;
+    const struct relume_capture_params *p;
+};
 
 // ---------------------------------------------------------------- files
 
 static int is_image(const struct dirent *entry)
 {
-    static const char *const extensions[] = {
-        "jpg", "jpeg", "png", "tif", "tiff", "exr", "hdr", "pfm", "bmp", "tga",  "ppm", "pgm",
-        "jp2", "webp", "dpx", "gif", "dng",  "cr2", "cr3", "nef", "arw", "heic", NULL};
-    const char *dot = strrchr(entry->d_name, '.');
-    for (const char *const *e = extensions; dot && *e; e++)
-        if (!strcasecmp(dot + 1, *e))
-            return 1;
-    return 0;
+    return light_names_is_picture(entry->d_name);
 }
 
 static int by_name(const struct dirent **a, const struct dirent **b)
@@ -229,116 +60,300 @@ static bool is_separator(char c)
     return c == '/' || c == '\\';
 }
 
-static const char *listed_name(const char *listed)
-{
-    const char *name = listed + strlen(listed);
-    while (name > listed && !is_separator(name[-1]))
-        name--;
-    return name;
-}
-
 // In a project of RTIBuilder the list and its photographs lie in two folders side by side:
 // "C:\\...\\jpeg-exports\\a.jpg" is also "../jpeg-exports/a.jpg". NULL when it is not.
-static char *find_beside(struct draft *d, const char *folder, const char *listed,
-                         const struct relume_log *log)
+static char *find_beside(const struct listing *l, const char *listed)
 {
-    const char *name = listed_name(listed), *end = name - 1, *start = end;
+    const char *name = light_names_base(listed), *end = name - 1, *start = end;
     if (name == listed)
         return NULL;
     while (start > listed && !is_separator(start[-1]))
         start--;
     if (start == end || *start == '.')
         return NULL;
-    char *path = arena_format(&d->arena, "%s/../%.*s/%s", folder, (int)(end - start), start, name);
-    return path && input_exists(path, log) ? path : NULL;
+    char *path =
+        arena_format(&l->d->arena, "%s/../%.*s/%s", l->folder, (int)(end - start), start, name);
+    return path && input_exists(path, l->p->log) ? path : NULL;
 }
 
-// The file that a listed name means: the path itself, else its base name in the folder in any case,
-// else the same in the folder beside. A path that leaves the folder, and `project`, which holds it,
-// is `refused` where only that exists.
-static char *find_file(struct draft *d, const char *folder, const char *listed,
-                       struct dirent *const *files, int file_count, bool project,
-                       const struct relume_capture_params *p, bool *refused)
+static char *in_folder(const struct listing *l, const char *name)
 {
-    char *path = listed[0] == '/' ? arena_text(&d->arena, listed)
-                                  : arena_format(&d->arena, "%s/%s", folder, listed);
-    const bool exists = path && input_exists(path, p->log);
-    *refused = exists && !p->allow_outside && leaves_folder(listed);
-    if (!path || (exists && !*refused))
-        return path;
-    const char *base = listed_name(listed);
-    for (int exact = 1; exact >= 0; exact--)
-        for (int i = 0; i < file_count; i++)
-            if (exact ? !strcmp(files[i]->d_name, base) : !strcasecmp(files[i]->d_name, base)) {
-                *refused = false;
-                return arena_format(&d->arena, "%s/%s", folder, files[i]->d_name);
-            }
-    char *beside = find_beside(d, folder, listed, p->log);
-    if (beside)
-        *refused = !p->allow_outside && !project;
-    return beside ? beside : path;
+    return arena_format(&l->d->arena, "%s/%s", l->folder, name);
 }
 
-static relume_status resolve(struct draft *d, const char *path, const char *folder,
-                             struct dirent *const *files, int file_count, bool project,
-                             const struct relume_capture_params *p)
+// Files of the folder take the lights of their names, whatever folder the list says: found[lights]
+// becomes an index of a file. `found` is -1 for the names that are looked for.
+static relume_status find_names(const struct listing *l, int *found)
 {
-    const struct relume_log *log = p->log;
-    const char **images = d->view[0].images;
-    int missing = 0;
-    const char *first = NULL;
-    for (int i = 0; i < d->m.lights; i++) {
-        const char *listed = images[i];
-        bool refused;
-        images[i] = find_file(d, folder, listed, files, file_count, project, p, &refused);
-        if (!images[i])
+    const int n = l->list.count;
+    const char **name = mem_array((size_t)n, sizeof *name);
+    const char **file = mem_array((size_t)l->file_count, sizeof *file);
+    int *order = mem_array((size_t)l->file_count, sizeof *order);
+    int *line = mem_array((size_t)n, sizeof *line), *light = mem_array((size_t)n, sizeof *light);
+    struct light_names names = {
+        .path = l->path, .name = name, .line = line, .numbered = l->list.numbered};
+    relume_status status = name && file && order && line && light ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < n; i++)
+        if (found[i] < 0) {
+            name[names.count] = l->list.name[i];
+            line[names.count] = l->list.line[i];
+            light[names.count++] = i;
+        }
+    for (int i = 0; !status && i < l->file_count; i++)
+        file[i] = l->files[i]->d_name;
+    int matched = 0;
+    if (!status && names.count)
+        status = light_names_pair(order, &matched, &names, file, l->file_count, l->p->log);
+    for (int i = 0; !status && matched && i < l->file_count; i++)
+        if (order[i] >= 0)
+            found[light[order[i]]] = i;
+    mem_free(name);
+    mem_free(file);
+    mem_free(order);
+    mem_free(line);
+    mem_free(light);
+    return status;
+}
+
+// found[lights] becomes the number of files where the listed path exists and is allowed, and -1
+// elsewhere.
+static relume_status find_paths(const struct listing *l, int *found)
+{
+    for (int i = 0; i < l->list.count; i++) {
+        const char *listed = l->list.name[i];
+        const char *path = *listed == '/' ? listed : in_folder(l, listed);
+        if (!path)
             return RELUME_ENOMEM;
-        if (refused)
-            return log_fail(log, RELUME_ELIMIT,
-                            "%s: names '%.200s', outside its folder; expected the image beside the "
-                            ".lp file; if you trust it, --allow-outside",
-                            path, listed);
-        if (!input_exists(images[i], log) && missing++ == 0)
-            first = listed;
-    }
-    if (missing == d->m.lights && file_count == d->m.lights) {
-        log_line(log, RELUME_WARNING,
-                 "%s: none of the listed images exists; the %d images of the folder are taken in "
-                 "the order of their names",
-                 path, file_count);
-        for (int i = 0; i < file_count; i++)
-            if (!(images[i] = arena_format(&d->arena, "%s/%s", folder, files[i]->d_name)))
-                return RELUME_ENOMEM;
-    } else if (missing && !p->skip_missing) {
-        return log_fail(log, RELUME_ENOTFOUND,
-                        "%s: image '%.200s' does not exist; %d of %d images %s missing; "
-                        "--skip-missing continues without %s",
-                        path, first, missing, d->m.lights, missing == 1 ? "is" : "are",
-                        missing == 1 ? "it" : "them");
+        l->d->view->images[i] = arena_text(&l->d->arena, path);
+        if (!l->d->view->images[i])
+            return RELUME_ENOMEM;
+        const bool allowed = l->p->allow_outside || !leaves_folder(listed);
+        found[i] = allowed && input_exists(path, l->p->log) ? l->file_count : -1;
     }
     return RELUME_OK;
 }
 
-relume_status lp_resolve(struct draft *draft, const char *path, bool project,
-                         const struct relume_capture_params *params)
+static relume_status refuse_outside(const struct listing *l, int light)
 {
-    char *copy = mem_text(path);
-    if (!copy)
-        return RELUME_ENOMEM;
-    const char *folder = dirname(copy);
-    struct dirent **files = NULL;
-    const int found = scandir(folder, &files, is_image, by_name);
-    if (found < 0 && errno != ENOENT) {
-        const relume_status status =
-            relume_input_fail(params->log, folder, "cannot be listed", errno);
-        mem_free(copy);
-        return status;
+    return log_fail(l->p->log, RELUME_ELIMIT,
+                    "%s: names '%.200s', outside its folder; expected the image beside the "
+                    ".lp file; if you trust it, --allow-outside",
+                    l->path, l->list.name[light]);
+}
+
+// Tries the path itself, its base name in the folder, and the same in the folder beside. A path
+// that leaves the folder, and the project that holds it, is refused where only that exists.
+static relume_status find_files(const struct listing *l, int *missing)
+{
+    const char **images = l->d->view->images;
+    int *found = mem_array((size_t)l->list.count, sizeof *found);
+    relume_status status = found ? find_paths(l, found) : RELUME_ENOMEM;
+    if (!status)
+        status = find_names(l, found);
+    *missing = 0;
+    for (int i = 0; !status && i < l->list.count; i++) {
+        if (found[i] >= 0) {
+            if (found[i] < l->file_count && !(images[i] = in_folder(l, l->files[found[i]]->d_name)))
+                status = RELUME_ENOMEM;
+            continue;
+        }
+        const char *beside = find_beside(l, l->list.name[i]);
+        if (beside ? !l->p->allow_outside && !l->project
+                   : !l->p->allow_outside && input_exists(images[i], l->p->log))
+            status = refuse_outside(l, i);
+        images[i] = beside ? beside : images[i];
+        *missing += !beside;
     }
-    const int file_count = found > 0 ? found : 0;
-    const relume_status status = resolve(draft, path, folder, files, file_count, project, params);
-    for (int i = 0; i < file_count; i++)
-        mem_free_libc(files[i]);
-    mem_free_libc(files);
+    mem_free(found);
+    return status;
+}
+
+// ---------------------------------------------------------------- what does not match
+
+struct image {
+    const char *path;
+    int light;
+};
+
+static int by_path(const void *a, const void *b)
+{
+    const struct image *one = a, *two = b;
+    const int order = strcmp(one->path, two->path);
+    return order ? order : one->light - two->light;
+}
+
+// The lights' images sorted by their paths; NULL without memory.
+static struct image *sort_images(const struct listing *l)
+{
+    struct image *sorted = mem_array((size_t)l->list.count, sizeof *sorted);
+    for (int i = 0; sorted && i < l->list.count; i++)
+        sorted[i] = (struct image){l->d->view->images[i], i};
+    if (sorted)
+        qsort(sorted, (size_t)l->list.count, sizeof *sorted, by_path);
+    return sorted;
+}
+
+static bool is_listed(const struct image *sorted, int n, const char *path)
+{
+    int low = 0, high = n;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (strcmp(sorted[middle].path, path) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < n && !strcmp(sorted[low].path, path);
+}
+
+// The first photograph in the folder of `path` that no line lists: its name, or NULL.
+static const char *find_unlisted(const struct listing *l, const struct image *sorted,
+                                 const char *path)
+{
+    struct relume_photographs photos;
+    char *copy = mem_text(path);
+    const char *folder = copy ? dirname(copy) : NULL, *out = NULL;
+    if (folder &&
+        !relume_photographs_list(&photos, &folder, 1,
+                                 relume_photographs_params(.quiet = true, .companions = true))) {
+        for (int i = 0; !out && i < photos.count; i++)
+            if (!is_listed(sorted, l->list.count, photos.path[i]))
+                out = arena_text(&l->d->arena, light_names_base(photos.path[i]));
+        relume_photographs_free(&photos);
+    }
+    mem_free(copy);
+    return out;
+}
+
+static relume_status refuse_missing(const struct listing *l, int missing)
+{
+    const char **images = l->d->view->images;
+    struct image *sorted = sort_images(l);
+    int first = 0;
+    if (!sorted)
+        return RELUME_ENOMEM;
+    while (first < l->list.count - 1 && input_exists(images[first], l->p->log))
+        first++;
+    const char *unlisted = find_unlisted(l, sorted, images[first]);
+    mem_free(sorted);
+    const bool one = missing == 1;
+    return log_fail(l->p->log, RELUME_ENOTFOUND,
+                    "%s: image '%.200s' does not exist; %d of %d images %s missing; "
+                    "--skip-missing continues without %s%s%s%s",
+                    l->path, l->list.name[first], missing, l->list.count, one ? "is" : "are",
+                    one ? "it" : "them", unlisted ? "; no line lists '" : "",
+                    unlisted ? unlisted : "", unlisted ? "'" : "");
+}
+
+// A photograph under two lights stands for one that is not listed.
+static relume_status check_twice(const struct listing *l)
+{
+    struct image *sorted = sort_images(l);
+    int k = 1;
+    if (!sorted)
+        return RELUME_ENOMEM;
+    while (k < l->list.count && strcmp(sorted[k].path, sorted[k - 1].path))
+        k++;
+    relume_status status = RELUME_OK;
+    if (k < l->list.count) {
+        const char *path = sorted[k].path, *unlisted = find_unlisted(l, sorted, path);
+        const int a = l->list.line[sorted[k - 1].light], b = l->list.line[sorted[k].light];
+        if (unlisted)
+            status = log_fail(l->p->log, RELUME_EUNFIT,
+                              "%s: '%s' is listed in lines %d and %d; '%s' is never listed",
+                              l->path, light_names_base(path), a, b, unlisted);
+        else
+            log_line(l->p->log, RELUME_WARNING,
+                     "%s: '%s' is listed in lines %d and %d; it counts as one photograph under "
+                     "each of these lights",
+                     l->path, light_names_base(path), a, b);
+    }
+    mem_free(sorted);
+    return status;
+}
+
+// ---------------------------------------------------------------- pairing
+
+static relume_status take_in_order(const struct listing *l)
+{
+    const bool named = l->list.name && !l->list.numbered;
+    if (l->file_count != l->list.count)
+        return log_fail(l->p->log, RELUME_EUNFIT,
+                        "%s: names no photographs, and has %d lights; expected %d, as photographs "
+                        "in its folder",
+                        l->path, l->list.count, l->file_count);
+    log_line(l->p->log, named ? RELUME_WARNING : RELUME_NOTE,
+             "%s: %s; the %d images of the folder are taken in the order of their names", l->path,
+             named ? "none of the listed images exists" : "names no photographs", l->file_count);
+    for (int i = 0; i < l->file_count; i++)
+        if (!(l->d->view->images[i] = in_folder(l, l->files[i]->d_name)))
+            return RELUME_ENOMEM;
+    return RELUME_OK;
+}
+
+static relume_status find_images(const struct listing *l)
+{
+    int missing = l->list.count;
+    relume_status status = l->list.name ? find_files(l, &missing) : RELUME_OK;
+    if (status)
+        return status;
+    const bool index = !l->list.name || l->list.numbered;
+    if (missing == l->list.count && (index || l->file_count == missing))
+        return take_in_order(l);
+    return missing && !l->p->skip_missing ? refuse_missing(l, missing) : check_twice(l);
+}
+
+static relume_status make_draft(const struct listing *l)
+{
+    struct draft *d = l->d;
+    const size_t n = (size_t)l->list.count;
+    d->directions = arena_array(&d->arena, n, sizeof *d->directions);
+    d->view = arena_array(&d->arena, 1, sizeof *d->view);
+    if (!d->directions || !d->view ||
+        !(d->view->images = arena_array(&d->arena, n, sizeof(char *))))
+        return RELUME_ENOMEM;
+    memcpy(d->directions, l->list.direction, n * sizeof *d->directions);
+    d->m = (struct relume_manifest){
+        .geometry = relume_geometry_default(RELUME_PLANAR, 1, 1),
+        .lights = l->list.count,
+        .directions = d->directions,
+        .views = 1,
+        .view = d->view,
+    };
+    return RELUME_OK;
+}
+
+static relume_status list_folder(struct listing *l)
+{
+    const int found = scandir(l->folder, &l->files, is_image, by_name);
+    l->file_count = found > 0 ? found : 0;
+    return found < 0 && errno != ENOENT
+               ? relume_input_fail(l->p->log, l->folder, "cannot be listed", errno)
+               : RELUME_OK;
+}
+
+relume_status lp_open(struct draft *out, const char *path, bool project,
+                      const struct relume_capture_params *params)
+{
+    struct listing l = {.d = out, .path = path, .project = project, .p = params};
+    char *copy = mem_text(path);
+    *out = (struct draft){0};
+    relume_status status =
+        copy ? light_list_read(&l.list, path, params->limits, params->log) : RELUME_ENOMEM;
+    if (!status) {
+        l.folder = dirname(copy);
+        status = make_draft(&l);
+    }
+    if (!status)
+        status = list_folder(&l);
+    if (!status)
+        status = find_images(&l);
+    if (status)
+        draft_free(out);
+    for (int i = 0; i < l.file_count; i++)
+        mem_free_libc(l.files[i]);
+    mem_free_libc(l.files);
+    light_list_free(&l.list);
     mem_free(copy);
     return status;
 }

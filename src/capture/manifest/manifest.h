@@ -22,15 +22,12 @@ struct draft {
 };
 void draft_free(struct draft *draft);
 
-// A .lp file. Image names are as written; lp_resolve finds the files. `positions` holds the vectors
-// as written, `m.positions` is NULL.
-relume_status lp_read(struct draft *out, const char *path, const struct relume_limits *limits,
-                      const struct relume_log *log);
-// Replace the names by existing paths (docs/user-guide: "Names decide"); missing files stay as
-// they are when `skip_missing`. Names that leave the folder mean their base name in it, unless
-// `allow_outside`; in a `project`, also a file of a folder beside it.
-relume_status lp_resolve(struct draft *draft, const char *path, bool project,
-                         const struct relume_capture_params *params);
+// A list of lights as a capture of the photographs that it names, or, where it has no names, of
+// those in its folder in the order of theirs. Names decide (docs/capture.md, "Lists of lights");
+// missing files stay as they are with `skip_missing`. Names that leave the folder mean their base
+// name in it, unless `allow_outside`; in a `project`, also a file of a folder beside it.
+relume_status lp_open(struct draft *out, const char *path, bool project,
+                      const struct relume_capture_params *params);
 
 // A capture.json; paths are made relative to the working folder.
 relume_status manifest_read(struct draft *out, const char *path,

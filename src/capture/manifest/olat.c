@@ -1,6 +1,7 @@
 // olat.c - one light at a time: captures as light stages leave them, an EXR with a layer for every
 // light, or a folder of pictures beside a list of directions
 #include "capture/manifest/capture.h"
+#include "capture/manifest/loaded_lights.h"
 #include "capture/manifest/reflectance_table.h"
 #include "core/base/infile.h"
 #include "core/base/log.h"
@@ -179,54 +180,28 @@ static char *list_beside(const char *path, const struct relume_log *log)
     return out;
 }
 
-// Whether a list's name is that of a picture, with its ending or without, or of a layer.
-static bool is_named(const char *picture, const char *name)
+// Directions in the order of the layers that a list names; the list's own order where it names
+// none.
+static relume_status order_by_layer(struct relume_captured_lights *out,
+                                    const struct loaded_lights *list, const struct layers *l,
+                                    const char *path, const struct relume_log *log)
 {
-    const char *file = path_name(picture), *dot = strrchr(file, '.');
-    const size_t n = strlen(name);
-    return !strcmp(file, name) || (dot && n == (size_t)(dot - file) && !strncmp(file, name, n));
-}
-
-// The lights in the order of the pictures that a list names, names[lights]; as they stand where it
-// names none of these.
-static relume_status order_by_name(struct relume_captured_lights *lights,
-                                   const char *const *pictures, const char *list,
-                                   const struct relume_log *log)
-{
-    const size_t n = (size_t)lights->count;
-    struct relume_vec3 *ordered = mem_array(n, sizeof *ordered);
-    const char *lost = NULL;
-    size_t found = 0;
-    if (!ordered)
-        return RELUME_ENOMEM;
-    for (size_t i = 0; lights->name && i < n; i++) {
-        size_t at = 0;
-        while (at < n && !is_named(pictures[i], lights->name[at]))
-            at++;
-        ordered[i] = lights->direction[at < n ? at : 0];
-        found += at < n;
-        lost = at < n || lost ? lost : path_name(pictures[i]);
-    }
-    if (found == n)
-        memcpy(lights->direction, ordered, n * sizeof *ordered);
-    mem_free(ordered);
-    if (found && lost)
-        return log_fail(
-            log, RELUME_EUNFIT,
-            "%s: it names no light '%s'; expected the names of all pictures, or of none", list,
-            lost);
-    return RELUME_OK;
-}
-
-// The same of layers.
-static relume_status order_by_layer(struct relume_captured_lights *lights, const struct layers *l,
-                                    const char *list, const struct relume_log *log)
-{
+    const struct light_names names = loaded_lights_names(list, path);
     const char **name = mem_array((size_t)l->count, sizeof *name);
-    for (int i = 0; name && i < l->count; i++)
+    int *order = mem_array((size_t)l->count, sizeof *order), matched;
+    out->direction = mem_array((size_t)l->count, sizeof *out->direction);
+    relume_status status = name && order && out->direction ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < l->count; i++)
         name[i] = l->layer[i].name;
-    const relume_status status = name ? order_by_name(lights, name, list, log) : RELUME_ENOMEM;
+    if (!status)
+        status = light_names_pair_all(order, &matched, &names, name, l->count, log);
+    if (!status && matched && matched < l->count)
+        status = light_names_refuse(&names, order, name, l->count, "", log);
+    for (int i = 0; !status && i < l->count; i++)
+        out->direction[i] = list->lights.direction[order[i]];
+    out->count = l->count;
     mem_free(name);
+    mem_free(order);
     return status;
 }
 
@@ -252,14 +227,11 @@ static relume_status directions_of(struct relume_captured_lights *out, const str
             "with a line x y z for each, by its own name (.csv, .txt, .lp) or "
             "light_dirs.txt",
             path, l->count);
-    relume_status status = relume_captured_lights_load(out, list, false, log);
-    if (!status && out->count != l->count) {
-        status =
-            log_fail(log, RELUME_EUNFIT, "%s: %d lights; expected %d, one for each layer of %s",
-                     list, out->count, l->count, path);
-    }
+    struct loaded_lights lights;
+    relume_status status = loaded_lights_load(&lights, list, false, log);
     if (!status)
-        status = order_by_layer(out, l, list, log);
+        status = order_by_layer(out, &lights, l, list, log);
+    loaded_lights_free(&lights);
     if (status)
         relume_captured_lights_destroy(out);
     mem_free(list);
@@ -428,49 +400,74 @@ bool olat_is_folder(const char *folder, const struct relume_log *log)
     return is;
 }
 
+// order[pictures] is the light of each, -1: none, which leaves it out.
 static relume_status draft_of(struct draft *d, const struct relume_photographs *list,
-                              const struct relume_captured_lights *lights)
+                              const struct relume_captured_lights *lights, const int *order)
 {
-    const size_t n = (size_t)lights->count;
+    const size_t n = (size_t)list->count;
     d->m = (struct relume_manifest){.geometry = relume_geometry_default(RELUME_PLANAR, 1, 1),
-                                    .lights = lights->count,
                                     .views = 1};
     d->directions = arena_array(&d->arena, n, sizeof *d->directions);
     d->view = arena_array(&d->arena, 1, sizeof *d->view);
     if (!d->directions || !d->view)
         return RELUME_ENOMEM;
-    memcpy(d->directions, lights->direction, n * sizeof *d->directions);
     *d->view = (struct relume_manifest_view){.images = arena_array(&d->arena, n, sizeof(char *))};
-    for (size_t i = 0; d->view->images && i < n; i++)
-        if (!(d->view->images[i] = arena_text(&d->arena, list->path[i])))
+    for (size_t i = 0; d->view->images && i < n; i++) {
+        if (order[i] < 0)
+            continue;
+        d->directions[d->m.lights] = lights->direction[order[i]];
+        if (!(d->view->images[d->m.lights++] = arena_text(&d->arena, list->path[i])))
             return RELUME_ENOMEM;
+    }
     if (d->view->images && list->mask)
         d->view->mask = arena_text(&d->arena, list->mask);
     draft_publish(d);
     return d->view->images ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// Names decide; without names pictures take the lights in the order of their own names.
+static relume_status pair_pictures(int *order, const struct relume_photographs *list,
+                                   const struct loaded_lights *lights, const char *path,
+                                   const struct relume_capture_params *p)
+{
+    const struct light_names names = loaded_lights_names(lights, path);
+    const char *const *pictures = (const char *const *)list->path;
+    int matched;
+    const relume_status status =
+        light_names_pair_all(order, &matched, &names, pictures, list->count, p->log);
+    const int alone = list->count - matched, unused = names.count - matched;
+    if (status || !matched || (!alone && !unused))
+        return status;
+    if (!p->skip_missing)
+        return light_names_refuse(&names, order, pictures, list->count,
+                                  "--skip-missing continues without these", p->log);
+    log_line(p->log, RELUME_WARNING,
+             "%s: left out: %d photographs without a light, %d lights without a photograph", path,
+             alone, unused);
+    return RELUME_OK;
+}
+
 relume_status olat_read_folder(struct draft *out, char **path, const char *folder,
-                               const struct relume_log *log)
+                               const struct relume_capture_params *p)
 {
     struct relume_photographs list;
-    struct relume_captured_lights lights;
-    char *from = list_in(folder, log);
+    struct loaded_lights lights;
+    char *from = list_in(folder, p->log);
     *path = from;
-    relume_status status = from ? list_pictures(&list, folder, log) : RELUME_ENOMEM;
+    relume_status status = from ? list_pictures(&list, folder, p->log) : RELUME_ENOMEM;
     if (status)
         return status;
     qsort(list.path, (size_t)list.count, sizeof *list.path, by_number);
-    status = relume_captured_lights_load(&lights, from, false, log);
-    if (!status && lights.count != list.count)
-        status = log_fail(log, RELUME_EUNFIT,
-                          "%s: %d lights, but %d pictures in the folder; expected one for each",
-                          from, lights.count, list.count);
+    int *order = mem_array((size_t)list.count, sizeof *order);
+    status = loaded_lights_load(&lights, from, false, p->log);
+    if (!status && !order)
+        status = RELUME_ENOMEM;
     if (!status)
-        status = order_by_name(&lights, (const char *const *)list.path, from, log);
+        status = pair_pictures(order, &list, &lights, from, p);
     if (!status)
-        status = draft_of(out, &list, &lights);
-    relume_captured_lights_destroy(&lights);
+        status = draft_of(out, &list, &lights.lights, order);
+    mem_free(order);
+    loaded_lights_free(&lights);
     relume_photographs_free(&list);
     return status;
 }

@@ -49,14 +49,12 @@ static relume_status read_description(relume_capture *c, const char *path,
     else if (!(c->path = mem_text(path)))
         status = RELUME_ENOMEM;
     if (!status && !c->path && olat_is_folder(path, p->log))
-        return olat_read_folder(&c->draft, &c->path, path, p->log);
+        return olat_read_folder(&c->draft, &c->path, path, p);
     if (!status && !c->path)
         status = project_description(&c->path, path, p->log);
     if (!status && !picture_has_extension(c->path, ".lp"))
         return manifest_read(&c->draft, c->path, p);
-    if (!status)
-        status = lp_read(&c->draft, c->path, p->limits, p->log);
-    return status ? status : lp_resolve(&c->draft, c->path, folder, p);
+    return status ? status : lp_open(&c->draft, c->path, folder, p);
 }
 
 // Keep only the lights for which `keep` holds, in every array that is indexed by light.

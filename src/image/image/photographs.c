@@ -18,8 +18,8 @@
 struct gathering {
     struct relume_photographs *list;
     const struct relume_photographs_params *p;
-    int skipped, lp, tables;
-    char *table;      // of lights, the first
+    int skipped, lp, tables[2];
+    char *table[2];   // of lights: the first .txt, the first .csv
     char names[160];  // of the first that were left out
 };
 
@@ -77,11 +77,12 @@ static void keep_beside(struct gathering *g, char *path, const char *why)
 {
     const bool lp = picture_has_extension(path, ".lp"), mask = !lp && is_named(path, "mask");
     // A list of light directions by its name.
-    const bool table = !mask && (picture_has_extension(path, ".txt") && !is_named(path, "intens") &&
-                                 !is_named(path, "pos") &&
+    const bool csv = picture_has_extension(path, ".csv");
+    const bool table = !mask && ((csv || picture_has_extension(path, ".txt")) &&
+                                 !is_named(path, "intens") && !is_named(path, "pos") &&
                                  (is_named(path, "light") || is_named(path, "direction")));
-    const bool used = mask || (lp && g->lp++ == 0) || (table && g->tables++ == 0);
-    char **const place = lp ? &g->list->lights : table ? &g->table : &g->list->mask;
+    const bool used = mask || (lp && g->lp++ == 0) || (table && g->tables[csv]++ == 0);
+    char **const place = lp ? &g->list->lights : table ? &g->table[csv] : &g->list->mask;
     if (!g->p->companions || !used)
         leave_out(g, path, why);
     if (used) {
@@ -197,17 +198,19 @@ static void put_back(struct gathering *g, char **path)
     *path = NULL;
 }
 
-// Of several that could be meant none is.
+// Several lists of one kind leave the choice open. A .txt comes before a .csv.
 static void choose_lights(struct gathering *g)
 {
     char **lights = &g->list->lights;
     if (g->lp > 1)
         put_back(g, lights);
-    if (g->lp == 0 && g->tables == 1) {
-        *lights = g->table;
-        g->table = NULL;
+    for (int csv = 0; csv < 2; csv++) {
+        if (g->lp == 0 && !*lights && g->tables[csv] == 1 && (!csv || !g->tables[0])) {
+            *lights = g->table[csv];
+            g->table[csv] = NULL;
+        }
+        put_back(g, &g->table[csv]);
     }
-    put_back(g, &g->table);
 }
 
 // ---------------------------------------------------------------- folders below

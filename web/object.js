@@ -282,7 +282,7 @@ const firstObject = () => document.querySelector('relume-object');
 let saidObject = () => {};
 const objectReady = new Promise((resolve) => { saidObject = resolve; });
 
-// Beside relume.js in a page its script copies and its core come here too, and all else stays with it.
+// The script copies and the core of relume.js in a page come here too, and all else stays with it.
 const before = window.relume;
 window.relume = {
     ready: objectReady,

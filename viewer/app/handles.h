@@ -31,7 +31,7 @@ struct handles_mark {
     bool has_target;            // ... else it is far
 };
 
-// Of one object; lists can hold one more after handles_begin.
+// Handles of one object; lists can hold one more after handles_begin.
 struct handles_edit {
     bool edited;  // false: reflections are as they are
     struct relume_reflection_edit edit;

@@ -31,7 +31,7 @@ relume_status gl_renderer_need_between(struct gl_renderer *r, const struct frame
 // What a way needs besides. Likewise.
 relume_status gl_renderer_need_points(struct gl_renderer *r, const struct frame_request *request,
                                       enum between_way way);
-// By draws, in that way; false in *drawn where there are none for it.
+// Draws in that way; false in *drawn where there are none for it.
 relume_status gl_renderer_draw_between(bool *drawn, struct gl_renderer *r,
                                        const struct frame_request *request,
                                        const struct frame_area *area,

@@ -83,7 +83,7 @@
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
     X(PFNGLVIEWPORTPROC, Viewport)
 
-// Of OpenGL 4.3, for compute shaders: all of them or none.
+// Functions of OpenGL 4.3, for compute shaders: all of them or none.
 #define GL_COMPUTE_FUNCTIONS(X)                                                                    \
     X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)                                                 \
     X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                                                   \

@@ -128,7 +128,7 @@ void acquire_correct(const struct acquisition *s, struct relume_image *image, bo
 // Finds photographs whose scene lies elsewhere by half a pixel or more, since the camera was
 // moved: says which, and fills their shift; `*moved`: there are some. RELUME_ENOMEM.
 relume_status acquire_register(struct acquisition *s, bool *moved);
-// Lumas of so many photographs have at most so many pixels a side.
+// Returns the most pixels that a side of a luma has, where there are `shots` photographs.
 int acquire_luma_side(int shots);
 // Moves a picture back by a shift; its border is repeated. RELUME_ENOMEM.
 relume_status acquire_move_back(struct relume_image *image, const double shift[2]);

@@ -517,7 +517,7 @@ static void take_light(struct shot *shot, const struct relume_captured_lights *l
         shot->intensity[c] = list->intensity ? list->intensity[k][c] : 1.0f;
 }
 
-// order[photographs] says which light of the list is that of a photograph.
+// order[photographs] says which light of the list belongs to a photograph.
 static relume_status take_lights(struct acquisition *s, const struct relume_captured_lights *list,
                                  const int *order)
 {

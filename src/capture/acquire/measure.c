@@ -76,7 +76,7 @@ static bool sum_patch(struct patch_sums *s, const struct relume_image *image,
     return true;
 }
 
-// All patches as they are seen through `h`; false where one lies beside the picture.
+// All patches as they are seen through `h`; false where one is outside of the picture.
 static bool sum_patches(struct relume_chart *t, const struct relume_image *image,
                         const struct homography *h, double part, int most, bool ends_at_1)
 {

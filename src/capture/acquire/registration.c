@@ -25,7 +25,7 @@ enum {
     LEAST_SIDE = 48,     // fewer pixels show nothing
     MEMORY = 128 << 20,  // for all of them, bytes
     REACH = 6,           // shifts that are tried, pixels of the coarse pictures
-    COARSE = 2,          // these are halved so many times
+    COARSE = 2,          // halvings of the fine pictures
     CLIMB = 24,          // steps on the fine ones
     ROUNDS = 2,          // of a mean of edges and positions on it
     LIKE = 6,            // photographs that explain another
@@ -36,7 +36,7 @@ static const double LEAST_SHIFT = 0.5;             // pixels of the photograph
 static const double SAME_POSITION = 0.5;           // pixels of the pictures that are compared
 static const double ALIKE = 0.1, KNOWN = 0.15;     // correlation of edges of one scene, at least
 static const double SCATTER = 0.02;                // of shifts that edges do not explain, at least
-static const double DOUBTFUL = 4.0, CLEAR = 10.0;  // scatters: of a step that counts, of a move
+static const double DOUBTFUL = 4.0, CLEAR = 10.0;  // a step counts, is a move; in scatters
 static const double EXPLAINED = 0.6;               // of the error without the shift
 static const double BETTER = 0.95;
 
@@ -319,7 +319,7 @@ struct run {
 };
 struct runs {
     double (*off)[2];  // [shots] positions beside the others around them
-    int *order;        // [shots] numbers of photographs: those of runs, then single ones
+    int *order;        // [shots] photographs by number: members of runs, then single ones
     int kept;          // of runs
     struct run *run;   // [shots] at most
     int count, long_runs;
@@ -351,7 +351,7 @@ static double scatter_of(const struct registration *r, double *work)
     return fmax(work[(n - 1) / 2], SCATTER);
 }
 
-// Beside the median of up to NEAR photographs before or after, whichever is nearer.
+// The distance to the median of up to NEAR photographs before or after, whichever is nearer.
 static void beside_others(const struct registration *r, struct runs *runs, int i, double off[2])
 {
     const int n = r->s->shots;
@@ -527,8 +527,8 @@ static int most_alike(const struct registration *r, const struct runs *runs, int
     return n < LIKE ? n : LIKE;
 }
 
-// How much of the error is left with which photographs of `base` explain those of a run, once these
-// are moved back: the median over some of the run.
+// How much of the error is left with which photographs of `base` explain the photographs of a run,
+// once these are moved back: the median over some of the run.
 static double error_left(const struct registration *r, const struct runs *runs,
                          const struct run *run, const struct run *base, struct likeness *list)
 {

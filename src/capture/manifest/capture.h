@@ -41,7 +41,7 @@ relume_status olat_read_folder(struct draft *out, char **path, const char *folde
 relume_status capture_finish(relume_capture **out, relume_capture *c,
                              const struct relume_capture_params *p);
 
-// One image of a capture of pictures in memory, which lie behind each other.
+// One image of a capture of pictures in memory, which follow each other there.
 struct picture_array capture_array(const relume_capture *capture, int view, int light);
 
 // One image of the capture, wherever it is.

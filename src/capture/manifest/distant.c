@@ -1,7 +1,7 @@
 // distant.c - the reflectance that distant lights would show, from near ones
 //
 // A pixel has samples at directions of its own, L_i. Its value at a direction D_j is interpolated
-// from those of the MOST lights nearest to it. The weights are those of a Gaussian process
+// from the MOST lights nearest to it. The weights come from a Gaussian process
 // (Rasmussen and Williams 2006, 2.2, 2.7) with covariance
 //     k(a, b) = LAMBERT a.b + exp(-|a - b|)  (+ NUGGET where a = b).
 // The first term makes the answer exact where values are linear in the light, as the shading of a

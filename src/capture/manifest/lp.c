@@ -245,7 +245,7 @@ static relume_status refuse_missing(const struct listing *l, int missing)
                     unlisted ? unlisted : "", unlisted ? "'" : "");
 }
 
-// A photograph under two lights stands for one that is not listed.
+// A photograph under two lights replaces one that is not listed.
 static relume_status check_twice(const struct listing *l)
 {
     struct image *sorted = sort_images(l);

@@ -96,7 +96,7 @@ static double highlight_bytes(double psnr_db)
     return fmin(fmax(exp2((psnr_db - 42.0) / 3.0), 1.0), 4.0) / 32.0;
 }
 
-// Of what moves with the light, a view: little beside its planes, or beside the header.
+// Bytes of what moves with the light, a view: little beside its planes, or beside the header.
 static double model_bytes(const struct contents *f)
 {
     const struct relume_pack_encode_params *p = f->p;

@@ -1,4 +1,4 @@
-// encode.c - one view becomes coefficient planes
+// project.c - one view becomes coefficient planes
 //
 // The images are read in bands of rows, whose pixels become coefficients chunk by chunk (apply.c).
 // Ranges for quantising are known only after the last band, so coefficients wait in a scratch file

@@ -9,7 +9,7 @@ enum { RELUME_MOST_SLABS = 64 };
 // Whether such a cylinder with discs can be: v_min < 0 < v_max, squares that fit, rows above them.
 // True of everything without discs.
 bool relume_geometry_fits(const struct relume_geometry *geometry, int width, int height);
-// False for pixels whose centres lie beside a cylinder's discs.
+// Returns false for pixels with centres outside of a cylinder's discs.
 bool relume_geometry_shows(const struct relume_geometry *geometry, int width, int height,
                            int column, int row);
 

@@ -225,7 +225,7 @@ static relume_status give_up(const struct published *f, double found)
                                p->psnr_db, f->levels.planes, f->report->psnr_db);
 }
 
-// Of the first picture's planes.
+// Planes of the first picture.
 static double first_most(const struct published *f)
 {
     const double numbers = 3.0 * (f->levels.planes + 1) * f->common.functions;

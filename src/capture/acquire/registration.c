@@ -35,9 +35,9 @@ enum {
 static const double LEAST_SHIFT = 0.5;             // pixels of the photograph
 static const double SAME_POSITION = 0.5;           // pixels of the pictures that are compared
 static const double ALIKE = 0.1, KNOWN = 0.15;     // correlation of edges of one scene, at least
-static const double SCATTER = 0.02;                // of shifts that edges do not explain, at least
+static const double SCATTER = 0.02;                // the least that positions have
 static const double DOUBTFUL = 4.0, CLEAR = 10.0;  // a step counts, is a move; in scatters
-static const double EXPLAINED = 0.6;               // of the error without the shift
+static const double EXPLAINED = 0.6;               // share of the error without the shift
 static const double BETTER = 0.95;
 
 int acquire_luma_side(int shots)
@@ -320,10 +320,10 @@ struct run {
 struct runs {
     double (*off)[2];  // [shots] positions beside the others around them
     int *order;        // [shots] photographs by number: members of runs, then single ones
-    int kept;          // of runs
+    int kept;          // members of runs
     struct run *run;   // [shots] at most
     int count, long_runs;
-    double scatter, least;  // of positions; of steps that count
+    double scatter, least;  // between neighbours; the least step that counts
     double *work;           // [shots]
 };
 

@@ -70,11 +70,9 @@ static const struct option options[] = {
         "photograph of an even white surface: removes uneven light; one, or one under each light"),
     FLAG("--radial", radial,
          "--flat: use only how it falls off from the middle, as a smooth curve"),
-    NAME(
-        "--align", align, "A",
-        "auto (find where the camera was moved, and move back), none, or homography (each onto the "
-        "first); default: auto",
-        ALIGN_AUTO, "auto", "none", "homography"),
+    NAME("--align", align, "A",
+         "auto (find where the camera was moved), none or homography; default: auto", ALIGN_AUTO,
+         "auto", "none", "homography"),
     GROUP("surface"),
     TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE.exr", "write surface normals"),
     TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),

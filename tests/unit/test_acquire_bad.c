@@ -145,7 +145,8 @@ static void many_alike(void **state)
     p.params.ball = circle;
     for (int i = 0; i < LAMPS; i++) {
         struct made_scene two = a_ball(0.1);
-        two.second = (struct relume_vec3){-0.5, 0.1, 1};
+        // one that stays is left out of the ball
+        two.second = (struct relume_vec3){-0.5, 0.3 - 0.3 * i, 1};
         two.lamp = (struct relume_vec3){0.5, 0.1 + 0.1 * i, 1};
         photograph(&p, i, two);
     }

@@ -64,8 +64,8 @@ static void check_directions(struct made_scene s, double tolerance)
     assert_true(ball.coverage > 0.6);
     for (int i = 0; i < LAMPS; i++) {
         struct relume_ball_light light;
-        CHECK_OK(
-            (s.matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball, &camera, &photo[i]));
+        CHECK_OK(s.matte ? relume_ball_matte(&light, &ball, &camera, &photo[i])
+                         : relume_ball_mirror(&light, &ball, &camera, &photo[i], NULL));
         assert_int_equal(light.finding, RELUME_BALL_SEEN);
         const double off = angle_deg(light.direction, lamp_direction(i));
         squares += off * off / LAMPS;
@@ -150,7 +150,7 @@ static void positions(void **state)
         double sigma;
         for (int b = 0; b < 3; b++) {
             struct relume_ball_light l;
-            CHECK_OK(relume_ball_mirror(&l, &ball[b], &camera, &photo[i]));
+            CHECK_OK(relume_ball_mirror(&l, &ball[b], &camera, &photo[i], NULL));
             const struct relume_vec3 middle = {2.0 * ball[b].x / MADE_WIDTH - 1.0,
                                                (MADE_HEIGHT - 2.0 * ball[b].y) / MADE_WIDTH, 0.0};
             origin[b] = vec3_along(middle, l.origin, 2.0 * ball[b].radius / MADE_WIDTH);
@@ -190,7 +190,7 @@ static enum relume_ball_finding finding_of(struct made_scene s)
     struct relume_image photo;
     struct relume_ball_light light;
     CHECK_OK(made_photograph(&photo, &s, 0.0));
-    CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo));
+    CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo, NULL));
     relume_image_destroy(&photo);
     assert_true(strlen(relume_ball_finding_text(light.finding)) > 3);
     return light.finding;
@@ -212,7 +212,7 @@ static void a_larger_second(void **state)
     for (int k = 0; k < 3 * MADE_WIDTH * MADE_HEIGHT; k++)
         if (hypot(k / 3 % MADE_WIDTH - 130.0, k / 3 / MADE_WIDTH - 100.0) < 4.0)
             photo.data[k] = 1.0f;
-    CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo));
+    CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo, NULL));
     relume_image_destroy(&photo);
     assert_int_equal(light.finding, RELUME_BALL_TWO);
 }

@@ -24,8 +24,8 @@ struct relume_acquire_params {
     const struct relume_limits *limits;
     struct relume_transfer transfer;  // overrides what the files say
     const char *mask;  // white where the object is; default: the mask among the photographs
-    bool skip_bad;     // leave photographs out that cannot be read, show another scene, or
-                       // no highlight; default: an error that names them
+    bool skip_bad;     // leave photographs out that cannot be read or show another scene; default:
+                       // an error or a warning that names them
     bool force;        // replace an existing folder
     int threads;       // default: all cores
 
@@ -111,6 +111,7 @@ struct relume_acquisition {
         wanted[RELUME_ACQUIRE_SUGGESTIONS];  // where lights should be added, widest gap
     int wanted_count;                        // first; until none is wider than 40 degrees
     struct relume_photometric photometric;   // normals, albedo; empty where lights do not allow it
+    int left_out;                            // photographs that are of no use; warnings name them
     char **warning;                          // [warnings]: sentences, also sent to the log
     int warnings;
     double direction_error_deg;  // mean over the lights of sigma_deg

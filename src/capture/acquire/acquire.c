@@ -22,14 +22,14 @@ static const double SENSOR_MM = 36.0;      // width of the frame that focal leng
 static const double OUTLIER = 3.0;         // times what photographs usually miss
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
 
-relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...)
+relume_status acquire_drop(struct acquisition *s, int i, bool allowed, const char *format, ...)
 {
     char text[1024];
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    if (!s->p.skip_bad)
+    if (!allowed)
         return log_fail(s->p.log, RELUME_EUNFIT, "%s", text);
     char *image = mem_format("%s/%s", outdir_path(s->dir), s->shot[i].name);
     if (!image)
@@ -41,6 +41,7 @@ relume_status acquire_drop(struct acquisition *s, int i, const char *format, ...
     relume_image_destroy(&s->shot[i].luma);
     memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
     s->shots--;
+    s->out->left_out++;
     if (!status && s->shots < 3)
         return log_fail(s->p.log, RELUME_EUNFIT, "fewer than 3 photographs are left");
     return status;

@@ -76,6 +76,7 @@ struct acquisition {
     struct relume_image mean, peak;
     struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
+    bool still;  // reflections that never move are left out of the balls
     struct alike alike[ALIKE_KINDS];
 };
 
@@ -89,9 +90,10 @@ __attribute__((format(printf, 4, 5))) relume_status acquire_warn_alike(struct ac
                                                                        double how_bad,
                                                                        const char *format, ...);
 void acquire_say_alike(struct acquisition *s);
-// Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
-__attribute__((format(printf, 3, 4))) relume_status acquire_drop(struct acquisition *s, int i,
-                                                                 const char *format, ...);
+// Photograph `i` is of no use: leaves it out with a warning where that is allowed, else fails.
+__attribute__((format(printf, 4, 5))) relume_status acquire_drop(struct acquisition *s, int i,
+                                                                 bool allowed, const char *format,
+                                                                 ...);
 
 static inline bool acquire_refines(const struct acquisition *s)
 {

@@ -58,13 +58,14 @@ static relume_status check_scene(struct acquisition *s)
     relume_status status = RELUME_OK;
     for (int i = 0; !status && usual > SIMILAR && i < s->shots;) {
         const double like = (double)s->shot[i].similarity;
-        if (!(like < UNLIKE * usual)) {
+        if (!(like < UNLIKE * usual) || s->shot[i].black > DARK) {
             i++;
             continue;
         }
         if (s->p.skip_bad) {
-            status = acquire_drop(
-                s, i, "shows another scene: similarity %.2f, the others have %.2f", like, usual);
+            status = acquire_drop(s, i, true,
+                                  "shows another scene: similarity %.2f, the others have %.2f",
+                                  like, usual);
             continue;
         }
         status = acquire_warn_alike(s, ALIKE_SCENE, -like,

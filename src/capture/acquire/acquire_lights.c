@@ -81,6 +81,14 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
                                               : NULL;
 }
 
+static relume_status look(struct relume_ball_light *out, const struct acquisition *s,
+                          const struct relume_ball *ball, const struct relume_image *photograph)
+{
+    return s->p.matte
+               ? relume_ball_matte(out, ball, &s->camera, photograph)
+               : relume_ball_mirror(out, ball, &s->camera, photograph, s->still ? &s->mean : NULL);
+}
+
 enum { CANDIDATES = 16, TRIALS = 6 };
 static const double DOUBTFUL = 3.0;  // degrees of error: a matte ball with more may not be one
 static const double NO_LAMP = 90.0;  // degrees that count where a matte ball shows no light
@@ -100,8 +108,7 @@ static relume_status try_candidates(double *bad, const struct acquisition *s,
         relume_status status = acquire_load_balls(&image, s, i * s->shots / trials);
         for (int b = 0; !status && b < n; b++) {
             struct relume_ball_light light = {0};
-            status = (matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball[b], &s->camera,
-                                                                      &image);
+            status = look(&light, s, &ball[b], &image);
             const bool sees = !objection(&light, matte);
             seen[b] += sees;
             error[b] += sees ? light.sigma_deg : NO_LAMP;
@@ -281,9 +288,8 @@ static relume_status look_all(const struct acquisition *s, struct relume_ball_li
         struct relume_image image;
         status = acquire_load_balls(&image, s, i);
         for (int b = 0; !status && b < balls; b++)
-            status = (s->p.matte ? relume_ball_matte : relume_ball_mirror)(
-                &light[(size_t)i * (size_t)balls + (size_t)b], &s->out->ball[b], &s->camera,
-                &image);
+            status =
+                look(&light[(size_t)i * (size_t)balls + (size_t)b], s, &s->out->ball[b], &image);
         relume_image_destroy(&image);
     }
     return status;
@@ -409,6 +415,50 @@ static relume_status check_mirrors(const struct acquisition *s,
     return RELUME_OK;
 }
 
+static const double LEAST_LEFT = 0.4;  // share of the photographs that show the lamp
+
+// Photographs whose balls show no lamp are left out; that many must show one.
+static relume_status check_enough(const struct acquisition *s,
+                                  const struct relume_ball_light *light)
+{
+    const int balls = s->out->balls;
+    const struct relume_ball *ball = &s->out->ball[0];
+    const char *why = NULL;
+    int good = 0, first = 0;
+    for (int i = 0; i < s->shots; i++) {
+        const char *objects = NULL;
+        for (int b = 0; b < balls && (!b || objects); b++)
+            objects = objection(&light[(size_t)i * (size_t)balls + (size_t)b], s->p.matte);
+        good += !objects;
+        if (objects && !why) {
+            why = objects;
+            first = i;
+        }
+    }
+    if (!why || (good >= 3 && good >= LEAST_LEFT * s->shots))
+        return RELUME_OK;
+    return log_fail(s->p.log, RELUME_EUNFIT,
+                    "%s: %s on the ball at %.0f,%.0f with radius %.0f; %d of %d photographs show "
+                    "the lamp there, expected at least 3 and %.0f %%; give --ball x,y,r, or "
+                    "--lights FILE",
+                    ball_photo(&s->shot[first]), why, ball->x, ball->y, ball->radius, good,
+                    s->shots, 100.0 * LEAST_LEFT);
+}
+
+// A window or a lamp of the room shows in all photographs: then most show two highlights, and the
+// one that stays is left out.
+static relume_status leave_still_out(struct acquisition *s, struct relume_ball_light *light)
+{
+    const int balls = s->out->balls;
+    int twice = 0;
+    for (int i = 0; i < s->shots * balls; i++)
+        twice += light[i].finding == RELUME_BALL_TWO;
+    if (s->p.matte || 2 * twice <= s->shots * balls)
+        return RELUME_OK;
+    s->still = true;
+    return look_all(s, light);
+}
+
 static relume_status locate_all(struct acquisition *s, const struct relume_ball_light *light)
 {
     const int shots = s->shots;
@@ -420,15 +470,13 @@ static relume_status locate_all(struct acquisition *s, const struct relume_ball_
         const struct relume_ball *ball = &s->out->ball[0];
         status = gather(s, i, light + (size_t)k * (size_t)s->out->balls, &seen, &why);
         if (!status && !seen.n)
-            status = acquire_drop(s, i,
-                                  "%s: ball at %.0f,%.0f with radius %.0f: %s; expected the lamp's "
-                                  "highlight",
-                                  ball_photo(&s->shot[i]), ball->x, ball->y, ball->radius, why);
+            status =
+                acquire_drop(s, i, true, "%s on the ball at %.0f,%.0f with radius %.0f%s%s", why,
+                             ball->x, ball->y, ball->radius, s->shot[i].ball_path ? " in " : "",
+                             s->shot[i].ball_path ? s->shot[i].ball_path : "");
         else if (!status)
             status = locate(s, i++, &seen, &disagree);
     }
-    if (!status && !s->shots)
-        status = log_fail(s->p.log, RELUME_EUNFIT, "no photograph shows the lamp in the ball");
     if (!status)
         status = warn_below(s);
     if (!status && !s->p.near && disagree > DISAGREE)
@@ -452,7 +500,14 @@ static relume_status lights_from_balls(struct acquisition *s)
         mem_zeroed((size_t)s->shots * (size_t)s->out->balls, sizeof *light);
     status = light ? look_all(s, light) : RELUME_ENOMEM;
     if (!status)
+        status = leave_still_out(s, light);
+    if (!status)
         status = check_mirrors(s, light);
+    if (!status)
+        status = check_enough(s, light);
+    if (!status && s->still)
+        log_line(s->p.log, RELUME_NOTE,
+                 "the ball shows a second reflection; one that never moves is left out");
     if (!status)
         status = warn_cut_off(s);
     if (!status)
@@ -527,7 +582,7 @@ static relume_status take_lights(struct acquisition *s, const struct relume_capt
         if (k >= 0)
             take_light(&s->shot[i++], list, k);
         else
-            status = acquire_drop(s, i, "%s names no light for it", s->p.lights);
+            status = acquire_drop(s, i, s->p.skip_bad, "%s names no light for it", s->p.lights);
     }
     s->has_intensities = list->intensity != NULL;
     return status;

@@ -247,7 +247,7 @@ static relume_status read_all(struct acquisition *s)
             status = take_photograph(s, i, &image);
         relume_image_destroy(&image);
         if (relume_status_is_input(status) && s->p.skip_bad)
-            status = acquire_drop(s, i, "cannot be used");
+            status = acquire_drop(s, i, true, "cannot be used");
         else
             i++;
         if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))

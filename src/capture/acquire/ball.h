@@ -47,10 +47,12 @@ relume_status relume_ball_candidates(struct relume_ball *out, int most, int *fou
 // A few words for people, never NULL.
 const char *relume_ball_finding_text(enum relume_ball_finding finding);
 
-// The light of one photograph (linear, of the camera's size). RELUME_ENOMEM.
+// The light of one photograph (linear, of the camera's size). `still` is what all photographs show,
+// one channel, which is taken off; NULL: nothing. RELUME_ENOMEM.
 relume_status relume_ball_mirror(struct relume_ball_light *out, const struct relume_ball *ball,
                                  const struct relume_ball_camera *camera,
-                                 const struct relume_image *photograph);
+                                 const struct relume_image *photograph,
+                                 const struct relume_image *still);
 // The ball is white (reflects all light) and matte. Shadow, highlights and what shines on it from
 // elsewhere are left out by reweighting.
 relume_status relume_ball_matte(struct relume_ball_light *out, const struct relume_ball *ball,

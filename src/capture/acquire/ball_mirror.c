@@ -9,6 +9,7 @@
 #include "core/base/memory.h"
 
 static const float DARK = 0.02f;         // peaks below are no lamp
+static const float BRIGHT = 0.5f;        // a ball that is lit all over and darker shows no lamp
 static const double RIM = 0.975;         // of the radius
 static const double BORDER = 1.0;        // pixels: what lies behind the ball mixes in
 static const double FULL = 0.15;         // share of the disc
@@ -27,7 +28,7 @@ const char *relume_ball_finding_text(enum relume_ball_finding finding)
 
 // The square of pixels around a ball, and which of them are lit and not looked at yet.
 struct window {
-    const struct relume_image *image;
+    const struct relume_image *image, *still;
     int x, y, width, height;
     float threshold;
     uint8_t *todo;  // [height][width]
@@ -43,7 +44,12 @@ struct spot {
 
 static float value(const struct window *w, int x, int y)
 {
-    return ball_grey(w->image, w->x + x, w->y + y);
+    const float v = ball_grey(w->image, w->x + x, w->y + y);
+    if (!w->still)
+        return v;
+    return fmaxf(
+        v - w->still->data[(size_t)(w->y + y) * (size_t)w->image->width + (size_t)(w->x + x)],
+        0.0f);
 }
 
 static bool cut_window(struct window *w, const struct relume_ball *ball,
@@ -178,7 +184,8 @@ static struct relume_ball_light look(struct window *w, const struct relume_ball 
     if (peak < DARK)
         return (struct relume_ball_light){.finding = RELUME_BALL_DARK};
     if (mark_lit(w, ball, camera) > FULL)
-        return (struct relume_ball_light){.finding = RELUME_BALL_FULL};
+        return (struct relume_ball_light){.finding =
+                                              peak < BRIGHT ? RELUME_BALL_DARK : RELUME_BALL_FULL};
     struct spot spot[2];
     find_spots(w, ball, camera, spot);
     if (!(spot[0].weight > 0.0))
@@ -193,13 +200,15 @@ static struct relume_ball_light look(struct window *w, const struct relume_ball 
 
 relume_status relume_ball_mirror(struct relume_ball_light *out, const struct relume_ball *ball,
                                  const struct relume_ball_camera *camera,
-                                 const struct relume_image *photograph)
+                                 const struct relume_image *photograph,
+                                 const struct relume_image *still)
 {
     struct window w;
     *out = (struct relume_ball_light){.finding = RELUME_BALL_DARK};
     if (!cut_window(&w, ball, photograph))
         return RELUME_OK;
     const size_t pixels = (size_t)w.width * (size_t)w.height;
+    w.still = still;
     w.todo = mem_array(pixels, 1);
     w.stack = mem_array(pixels, sizeof *w.stack);
     const relume_status status = w.todo && w.stack ? RELUME_OK : RELUME_ENOMEM;

@@ -249,6 +249,7 @@ static void print_json(const struct relume_acquisition *s)
     struct jwriter w = json_dense();
     jopen_object(&w, NULL);
     jput_integer(&w, "lights", s->lights);
+    jput_integer(&w, "left_out", s->left_out);
     jput_integer(&w, "width", s->width);
     jput_integer(&w, "height", s->height);
     put_balls(&w, s);
@@ -268,18 +269,21 @@ static void print_json(const struct relume_acquisition *s)
 static void say_made(const struct capture_options *o, const struct relume_acquisition *s)
 {
     const char *q = relume_name_quotes(o->output);
-    char directions[64] = "", positions[64] = "", next[4200] = "";
+    char directions[64] = "", positions[64] = "", left_out[64] = "", next[4200] = "";
     if (s->direction_error_deg > 0.0)
         snprintf(directions, sizeof directions, ", directions to about %.2f degrees",
                  s->direction_error_deg);
     if (s->position_error > 0.0)
         snprintf(positions, sizeof positions, ", positions to about %.1f %%",
                  100.0 * s->position_error);
+    if (s->left_out)
+        snprintf(left_out, sizeof left_out, ", %d photograph%s left out", s->left_out,
+                 relume_plural(s->left_out));
     if (!o->encode)
         snprintf(next, sizeof next, "; next: relume encode %s%.4096s%s -o FILE.exr", q, o->output,
                  q);
-    announce(&o->args, RELUME_NOTE, "%s: %d lights%s%s; see report.html there%s", o->output,
-             s->lights, directions, positions, next);
+    announce(&o->args, RELUME_NOTE, "%s: %d lights%s%s%s; see report.html there%s", o->output,
+             s->lights, directions, positions, left_out, next);
 }
 
 static relume_status run_capture(const struct args *args)

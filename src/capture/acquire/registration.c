@@ -30,6 +30,7 @@ enum {
     ROUNDS = 2,          // of a mean of edges and positions on it
     LIKE = 6,            // photographs that explain another
     TRIED = 9,           // photographs of a run that are explained
+    DEEPEST = 24,        // cuts of runs into runs: stacks are small
     NEAR = 3,            // photographs on either side of a step
 };
 static const double LEAST_SHIFT = 0.5;             // pixels of the photograph
@@ -384,8 +385,8 @@ static double step_at(const struct registration *r, const struct runs *runs, int
     return hypot(step[0], step[1]);
 }
 
-// Cuts a run at its largest step, and the parts again.
-static void cut(const struct registration *r, struct runs *runs, int first, int end)
+// Cuts a run at its largest step, and the parts again, `deep` times at most.
+static void cut(const struct registration *r, struct runs *runs, int first, int end, int deep)
 {
     double step[2], most = 0.0;
     int at = 0;
@@ -396,9 +397,9 @@ static void cut(const struct registration *r, struct runs *runs, int first, int 
             at = i;
         }
     }
-    if (most >= runs->least) {
-        cut(r, runs, first, at);
-        cut(r, runs, at, end);
+    if (most >= runs->least && deep) {
+        cut(r, runs, first, at, deep - 1);
+        cut(r, runs, at, end, deep - 1);
         return;
     }
     step[0] = step[1] = 0.0;
@@ -423,7 +424,7 @@ static void find_runs(const struct registration *r, struct runs *runs)
     for (int i = 0; i < n; i++)
         if (hypot(runs->off[i][0], runs->off[i][1]) <= runs->least)
             runs->order[runs->kept++] = i;
-    cut(r, runs, 0, runs->kept);
+    cut(r, runs, 0, runs->kept, DEEPEST);
     runs->long_runs = runs->count;
     for (int i = 0; i < n; i++)
         if (hypot(runs->off[i][0], runs->off[i][1]) > runs->least)

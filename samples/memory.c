@@ -4,6 +4,7 @@
 //     cc -std=c11 memory.c $(pkg-config --cflags --libs relume) -lm -o memory
 //     ./memory
 #include <math.h>
+#include <relume/format/coder.h>
 #include <relume/image/directions.h>
 #include <relume/relume.h>
 #include <stdio.h>

@@ -227,7 +227,7 @@ static void fill_folder(void)
     must("export\na.exr\n--to\nptm\n-o\na.ptm");
     must("relight\na.exr\n-o\np.exr");
     must("relight\na.exr\n-o\np.png");
-    put("lights.lp", "3\np.png 0 0 1\np.png 1 0 1\np.png 0 1 1\n");
+    put("lights.lp", "3\na.png 0 0 1\nb.png 1 0 1\nc.png 0 1 1\n");
     put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     put("rays", "0 0 3 0 0 -1\n");
     if (nftw(".", keep, 16, FTW_PHYS))

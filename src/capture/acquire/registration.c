@@ -535,7 +535,7 @@ static double error_left(const struct registration *r, const struct runs *runs,
 {
     const int n = run->end - run->first, tried = n < TRIED ? n : TRIED;
     const int border = r->fine.width / 12 + (int)fmax(fabs(run->x), fabs(run->y)) + 3;
-    double left[TRIED];
+    double left[TRIED] = {0.0};
     int like[LIKE], known = 0;
     for (int k = 0; k < tried; k++) {
         const int i = runs->order[run->first + k * n / tried];

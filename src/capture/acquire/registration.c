@@ -22,7 +22,6 @@
 
 enum {
     MOST_SIDE = 640,     // of the pictures that are compared
-    LEAST_SIDE = 48,     // fewer pixels show nothing
     MEMORY = 128 << 20,  // for all of them, bytes
     REACH = 6,           // shifts that are tried, pixels of the coarse pictures
     COARSE = 2,          // halvings of the fine pictures
@@ -58,8 +57,7 @@ struct registration {
     struct acquisition *s;
     struct edges *edges;               // [shots]
     struct relume_image fine, coarse;  // sums of those that are here
-    int here;
-    relume_status *status;  // [shots]
+    relume_status *status;             // [shots]
 };
 
 static relume_status make_edges(struct edges *e, const struct relume_image *luma)
@@ -85,35 +83,32 @@ static void make_edges_of(void *context, size_t i, int worker)
     r->status[i] = make_edges(&r->edges[i], &r->s->shot[i].luma);
 }
 
-// Adds `times` the picture, shifted back by (dx, dy), to a sum; its border is repeated.
-static void add_shifted(struct relume_image *sum, const struct relume_image *image, int dx, int dy,
-                        float times)
+// Adds the picture, shifted back by (dx, dy), to a sum; its border is repeated.
+static void add_shifted(struct relume_image *sum, const struct relume_image *image, int dx, int dy)
 {
     const int w = sum->width, h = sum->height;
     for (int y = 0; y < h; y++) {
-        const int v = y + dy < 0 ? 0 : y + dy >= h ? h - 1 : y + dy;
-        const float *row = image->data + (size_t)v * (size_t)w;
+        const float *row = image->data + (size_t)index_clamped(y + dy, h) * (size_t)w;
         float *out = sum->data + (size_t)y * (size_t)w;
         for (int x = 0; x < w; x++)
-            out[x] += times * row[x + dx < 0 ? 0 : x + dx >= w ? w - 1 : x + dx];
+            out[x] += row[index_clamped(x + dx, w)];
     }
 }
 
-static void add_edges(struct registration *r, const struct edges *e, float times)
+static void add_edges(struct registration *r, const struct edges *e)
 {
     const double scale = 1 << COARSE;
-    add_shifted(&r->fine, &e->fine, (int)lround(e->x), (int)lround(e->y), times);
-    add_shifted(&r->coarse, &e->coarse, (int)lround(e->x / scale), (int)lround(e->y / scale),
-                times);
+    add_shifted(&r->fine, &e->fine, (int)lround(e->x), (int)lround(e->y));
+    add_shifted(&r->coarse, &e->coarse, (int)lround(e->x / scale), (int)lround(e->y / scale));
 }
 
-// The correlation of `all`, less what is `image`'s own in it, with `image` moved by (dx, dy).
 struct pair {
     const struct relume_image *all, *image;
     int own[2];  // shift at which `image` is part of the sum
     float part;  // 1 where it is, else 0
 };
 
+// The correlation of `all`, without the part of `image` in it, with `image` moved by (dx, dy).
 static double correlate(const struct pair *p, int dx, int dy)
 {
     const int w = p->all->width, h = p->all->height;
@@ -122,14 +117,14 @@ static double correlate(const struct pair *p, int dx, int dy)
     for (int y = border; y < h - border; y++) {
         if (y + dy < 0 || y + dy >= h)
             continue;
-        const int v = y + p->own[1] < 0 ? 0 : y + p->own[1] >= h ? h - 1 : y + p->own[1];
+        const int v = index_clamped(y + p->own[1], h);
         const float *all = p->all->data + (size_t)y * (size_t)w;
         const float *own = p->image->data + (size_t)v * (size_t)w;
         const float *image = p->image->data + (size_t)(y + dy) * (size_t)w;
         float ra = 0.0f, rb = 0.0f, raa = 0.0f, rbb = 0.0f, rab = 0.0f;
         for (int x = border > -dx ? border : -dx; x < w - border && x + dx < w; x++) {
-            const int u = x + p->own[0] < 0 ? 0 : x + p->own[0] >= w ? w - 1 : x + p->own[0];
-            const float s = all[x] - p->part * own[u], t = image[x + dx];
+            const float s = all[x] - p->part * own[index_clamped(x + p->own[0], w)];
+            const float t = image[x + dx];
             ra += s;
             rb += t;
             raa += s * s;
@@ -233,14 +228,10 @@ static void find_position(void *context, size_t at, int worker)
 // position of the one before it.
 static void follow(struct registration *r)
 {
-    const struct edges *last = NULL;
-    for (int i = 0; i < r->s->shots; i++) {
+    const struct edges *last = &r->edges[0];
+    for (int i = 1; i < r->s->shots; i++) {
         struct edges *e = &r->edges[i];
         double step[2];
-        if (!last) {
-            last = e;
-            continue;
-        }
         const double like = position_on(e, &last->fine, &last->coarse, 0.0f, step);
         const bool stays = like < ALIKE || hypot(step[0], step[1]) < SAME_POSITION;
         e->x = last->x + (stays ? 0.0 : step[0]);
@@ -265,13 +256,11 @@ static void centre(struct registration *r)
         }
     }
     const double x = r->edges[at].x, y = r->edges[at].y;
-    r->here = 0;
     for (int i = 0; i < n; i++) {
         struct edges *e = &r->edges[i];
         e->x -= x;
         e->y -= y;
         e->here = hypot(e->x, e->y) < SAME_POSITION;
-        r->here += e->here;
     }
 }
 
@@ -283,7 +272,7 @@ static void sum_edges(struct registration *r)
            (size_t)r->coarse.width * (size_t)r->coarse.height * sizeof *r->coarse.data);
     for (int i = 0; i < n; i++)
         if (r->edges[i].here)
-            add_edges(r, &r->edges[i], 1.0f);
+            add_edges(r, &r->edges[i]);
 }
 
 static relume_status find_positions(struct registration *r)

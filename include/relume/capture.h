@@ -28,7 +28,9 @@ struct relume_manifest {
     int lights;
     const struct relume_vec3 *directions;  // [lights], unit
     const struct relume_vec3 *positions;   // [lights], world units, or NULL: distant lights
-    bool no_falloff;  // positions: light does not fall with the square of the distance
+    bool no_falloff;     // positions: light does not fall with the square of the distance
+    bool display_coded;  // the images were made of photographs that hold display values, of which 1
+                         // is white, though they may hold linear light by now
     const float (*intensities)[3];  // [lights], or NULL: all 1
     int views;
     const struct relume_manifest_view *view;  // [views]
@@ -125,7 +127,7 @@ RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
 enum { RELUME_DIGEST = 17 };
 
 // The largest value that images under `light` can hold, linear, intensity divided out: there they
-// clip. Infinite for floating-point files.
+// clip. Infinite for floating-point files, unless the manifest says `display_coded`.
 RELUME_API void relume_capture_white(const relume_capture *capture, int light, float rgb[3]);
 
 // One image, linear, light intensity divided out, three channels; so is the fall-off of near

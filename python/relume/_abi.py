@@ -51,7 +51,7 @@ struct relume_geometry { int projection; double window_min[2], window_max[2]; bo
 struct relume_manifest_view { double uv[2]; int slab; void *images; void *depth; void *mask; };
 struct relume_manifest { struct relume_transfer transfer; struct relume_geometry geometry;
     int slabs; void *slab; int lights; void *directions; void *positions; bool no_falloff;
-    void *intensities; int views; void *view; char *provenance; };
+    bool display_coded; void *intensities; int views; void *view; char *provenance; };
 struct relume_pictures { int sample; int width, height; int channels; void *data; void *depth;
     void *mask; };
 struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;
@@ -133,7 +133,7 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
 void relume_image_destroy(struct relume_image *image);
 const struct relume_pattern *relume_pattern_find(const char *name);
 relume_status relume_directions_make(struct relume_vec3 *out, int n, const struct relume_pattern *pattern, const struct relume_directions_params *params);
-relume_status relume_capture_open(relume_capture **out, const char *path, const struct relume_capture_params *params);
+relume_status relume_capture_open_photographs(relume_capture **out, const char *path, const struct relume_capture_params *params, const struct relume_acquire_params *acquire, struct relume_acquisition *report);
 relume_status relume_capture_create(relume_capture **out, const struct relume_manifest *manifest, const struct relume_pictures *pictures, const struct relume_capture_params *params);
 void relume_capture_destroy(relume_capture **capture);
 const struct relume_manifest *relume_capture_manifest(const relume_capture *capture);

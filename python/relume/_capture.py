@@ -161,7 +161,8 @@ class Capture(Handle):
             log=log.address, transfer=transfer_of(transfer), skip_missing=skip_missing,
             repair=repair)
         self._name = os.fsencode(path)
-        log.check(lib.relume_capture_open(self.out, self._name, ctypes.byref(params)))
+        log.check(lib.relume_capture_open_photographs(self.out, self._name, ctypes.byref(params),
+                                                      None, None))
         return self
 
     def _keep(self, array: np.ndarray) -> int:

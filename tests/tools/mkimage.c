@@ -13,6 +13,8 @@
 //   mkimage maxdiff A B                    the largest difference, linear
 //   mkimage codediff A B                   the mean difference of 8-bit sRGB codes, without alpha
 //   mkimage sum OUT A B                    A + B, as float EXR
+//   mkimage shift IN OUT N                 IN moved N columns to the right, its left column
+//   repeated
 #include "png_crc.h"
 
 #include <relume/extensions.h>
@@ -406,6 +408,21 @@ static void sum(const char *to, const char *a, const char *b)
     relume_image_destroy(&y);
 }
 
+static void shift(const char *from, const char *to, int columns)
+{
+    struct relume_image in = load(from);
+    const size_t c = (size_t)in.channels;
+    for (int y = 0; y < in.height; y++)
+        for (int x = in.width - 1; x > 0; x--) {
+            float *row = in.data + (size_t)y * (size_t)in.width * c;
+            const int left = x > columns ? x - columns : 0;
+            memcpy(row + (size_t)x * c, row + (size_t)left * c, c * sizeof *row);
+        }
+    if (relume_image_save(&in, to, NULL))
+        exit(3);
+    relume_image_destroy(&in);
+}
+
 static void print_pixel(const char *path, int x, int y)
 {
     struct relume_image image = load(path);
@@ -458,6 +475,8 @@ int main(int argc, char **argv)
         code_difference(argv[2], argv[3]);
     else if (!strcmp(what, "sum") && argc == 5)
         sum(argv[2], argv[3], argv[4]);
+    else if (!strcmp(what, "shift") && argc == 5)
+        shift(argv[2], argv[3], atoi(argv[4]));
     else
         return fprintf(stderr, "mkimage: see the head of tests/tools/mkimage.c\n"), 2;
     return 0;

@@ -31,11 +31,13 @@ relume_status acquire_drop(struct acquisition *s, int i, bool allowed, const cha
     va_end(list);
     if (!allowed)
         return log_fail(s->p.log, RELUME_EUNFIT, "%s", text);
-    char *image = mem_format("%s/%s", outdir_path(s->dir), s->shot[i].name);
-    if (!image)
+    char *image = s->dir ? mem_format("%s/%s", outdir_path(s->dir), s->shot[i].name) : NULL;
+    if (s->dir && !image)
         return RELUME_ENOMEM;
-    unlink(image);
+    if (image)
+        unlink(image);
     mem_free(image);
+    changed_picture_free(&s->shot[i].changed);
     const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
     relume_image_destroy(&s->shot[i].small);
     relume_image_destroy(&s->shot[i].luma);
@@ -125,7 +127,17 @@ static struct relume_geometry geometry_of(const struct acquisition *s)
     return g;
 }
 
-static relume_status write_manifest(const struct acquisition *s, const char *path)
+static bool is_display_coded(const struct acquisition *s)
+{
+    bool coded = s->p.transfer.curve != RELUME_CURVE_LINEAR;
+    for (int i = 0; i < s->shots; i++)
+        coded = coded && !s->shot[i].notes.linear && !s->shot[i].notes.floats;
+    return coded;
+}
+
+relume_status acquire_describe(const struct acquisition *s,
+                               relume_status (*use)(void *, const struct relume_manifest *),
+                               void *context)
 {
     const char **images = mem_array((size_t)s->shots, sizeof *images);
     if (!images)
@@ -141,16 +153,32 @@ static relume_status write_manifest(const struct acquisition *s, const char *pat
         .lights = s->shots,
         .directions = s->out->direction,
         .positions = s->out->position,
+        .display_coded = is_display_coded(s),
         .intensities = (const float(*)[3])s->out->intensity,
         .views = 1,
         .view = &view,
         .provenance = provenance,
     };
-    const relume_status status =
-        provenance ? relume_manifest_write(&m, path, s->p.log) : RELUME_ENOMEM;
+    const relume_status status = provenance ? use(context, &m) : RELUME_ENOMEM;
     mem_free(provenance);
     mem_free(images);
     return status;
+}
+
+struct writing {
+    const struct acquisition *s;
+    const char *path;
+};
+
+static relume_status write_text(void *context, const struct relume_manifest *m)
+{
+    const struct writing *w = context;
+    return relume_manifest_write(m, w->path, w->s->p.log);
+}
+
+static relume_status write_manifest(const struct acquisition *s, const char *path)
+{
+    return acquire_describe(s, write_text, &(struct writing){s, path});
 }
 
 static void print_lp(const void *context, FILE *f)
@@ -270,7 +298,7 @@ static relume_status name_outliers(struct acquisition *s)
     return status;
 }
 
-static relume_status fit(struct acquisition *s, const relume_capture *capture)
+relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
     relume_status status =
@@ -305,7 +333,7 @@ static relume_status open_and(struct acquisition *s,
     return status;
 }
 
-static relume_status fill_folder(struct acquisition *s)
+relume_status acquire_look(struct acquisition *s)
 {
     relume_status status = acquire_read(s);
     if (!status)
@@ -317,17 +345,23 @@ static relume_status fill_folder(struct acquisition *s)
     if (!status)
         status = acquire_find_lights(s);
     if (!status)
+        status = acquire_leave_black_out(s);
+    if (!status)
         status = acquire_whiten(s);
     if (!status)
         status = fill_result(s);
-    if (!status)
-        status = acquire_check_lights(s);
+    return status ? status : acquire_check_lights(s);
+}
+
+static relume_status fill_folder(struct acquisition *s)
+{
+    relume_status status = acquire_look(s);
     if (!status)
         status = describe(s);
     if (!status && acquire_refines(s))
         status = open_and(s, refine);
     if (!status)
-        status = open_and(s, fit);
+        status = open_and(s, acquire_fit);
     if (!status)
         acquire_say_alike(s);
     return status ? status : acquire_report(s, outdir_path(s->dir));
@@ -454,9 +488,10 @@ static relume_status check_inputs(const struct acquisition *s)
 
 // ---------------------------------------------------------------- the call
 
-static void release(struct acquisition *s)
+void acquire_release(struct acquisition *s)
 {
     for (int i = 0; s->shot && i < s->shots; i++) {
+        changed_picture_free(&s->shot[i].changed);
         relume_image_destroy(&s->shot[i].small);
         relume_image_destroy(&s->shot[i].luma);
     }
@@ -495,6 +530,20 @@ static relume_status make_folder(struct acquisition *s, const char *dir)
     return outdir_end(&s->dir, status);
 }
 
+relume_status acquire_begin(struct acquisition *s, const char *const *photographs, int count)
+{
+    relume_status status = check_params(&s->p);
+    if (s->p.focal_mm > 0.0)
+        s->p.fov_deg = 2.0 * atan(SENSOR_MM / 2.0 / s->p.focal_mm) * 180.0 / M_PI;
+    if (!status)
+        status = acquire_find_inputs(s, photographs, count);
+    if (!status)
+        status = acquire_read_target(s);
+    if (!status)
+        status = check_inputs(s);
+    return status ? status : list_shots(s);
+}
+
 relume_status relume_capture_photographs(const char *dir, const char *const *photographs, int count,
                                          const struct relume_acquire_params *params,
                                          struct relume_acquisition *report)
@@ -502,22 +551,12 @@ relume_status relume_capture_photographs(const char *dir, const char *const *pho
     struct relume_acquisition unread = {0}, *out = report ? report : &unread;
     struct acquisition s = {.p = PARAMS_WORK(relume_acquire_params, params), .out = out};
     *out = (struct relume_acquisition){0};
-    relume_status status = check_params(&s.p);
-    if (s.p.focal_mm > 0.0)
-        s.p.fov_deg = 2.0 * atan(SENSOR_MM / 2.0 / s.p.focal_mm) * 180.0 / M_PI;
-    if (!status)
-        status = acquire_find_inputs(&s, photographs, count);
-    if (!status)
-        status = acquire_read_target(&s);
-    if (!status)
-        status = check_inputs(&s);
-    if (!status)
-        status = list_shots(&s);
+    relume_status status = acquire_begin(&s, photographs, count);
     if (!status)
         status = make_folder(&s, dir);
     if (!status)
         status = acquire_write_products(&s);
-    release(&s);
+    acquire_release(&s);
     if (status || !report)
         relume_acquisition_destroy(out);
     return status;

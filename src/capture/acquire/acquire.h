@@ -4,6 +4,7 @@
 
 #include "capture/acquire/ball.h"
 #include "capture/acquire/sha256.h"
+#include "capture/manifest/capture.h"
 #include "core/base/outdir.h"
 #include "core/math/vec.h"
 
@@ -21,8 +22,10 @@ struct shot {
     double shift[2];  // where the scene lies, pixels to the right and down from where most
                       // photographs have it; taken out when the photograph is read
     float saturated, black, similarity;
-    double fine, coarse;       // detail.c: curvature from pixel to pixel, differences farther off
-    char sha256[SHA256_TEXT];  // of the file
+    float outside;        // share of the pixels whose colour lies outside sRGB, by their profile
+    double fine, coarse;  // detail.c: curvature from pixel to pixel, differences farther off
+    struct changed_picture changed;  // where there is no folder for it, and it is not as its file
+    char sha256[SHA256_TEXT];        // of the file
     uint64_t bytes;
     float sharpness;  // of the ratio of both, relative to the median; NaN: not measured
     double sigma_deg;
@@ -37,7 +40,6 @@ enum { SHOT_SMALL = 168 };
 enum acquire_alike {
     ALIKE_TURNED,
     ALIKE_SATURATED,
-    ALIKE_BLACK,
     ALIKE_SCENE,
     ALIKE_BLURRED,
     ALIKE_UNALIGNED,
@@ -52,6 +54,12 @@ struct alike {
     double how_bad;                      // the worst one
 };
 
+// Lights that are known before the photographs are looked at.
+struct listed_lights {
+    const vec3 *direction;  // [photographs]
+    bool turns;             // they belong to the photographs as these lie in their files
+};
+
 struct acquisition {
     struct relume_acquire_params p;  // masks and lights as they were found
     struct relume_photographs photographs, balls, flats;
@@ -60,8 +68,11 @@ struct acquisition {
                                // given in the order in which a shell sorts them
     char likely_lights[4096];  // a file that may be meant as lights: where no ball is found the
                                // sentence names it; "": none
+    const struct listed_lights *listed;  // of a list that named the photographs, or NULL
     struct relume_acquisition *out;
-    outdir *dir;
+    outdir *dir;                                  // NULL: the photographs stay in their files
+    const struct relume_capture_params *opening;  // without a folder
+    size_t left_bytes;                            // of opening->keep_bytes
     int shots;
     struct shot *shot;
     int width, height;  // of the photographs
@@ -104,6 +115,21 @@ static inline bool acquire_keeps_surface(const struct acquisition *s)
 {
     return s->p.surface || s->p.normals || s->p.albedo || s->p.height;
 }
+
+// The steps of relume_capture_photographs, from params and photographs on: inputs are found,
+// pictures read and looked at, lights found; then what capture.json says can be used, and the
+// photographs are compared with their lights. An input status and those of
+// relume_capture_photographs.
+relume_status acquire_begin(struct acquisition *s, const char *const *photographs, int count);
+relume_status acquire_look(struct acquisition *s);
+relume_status acquire_describe(const struct acquisition *s,
+                               relume_status (*use)(void *, const struct relume_manifest *),
+                               void *context);
+relume_status acquire_fit(struct acquisition *s, const relume_capture *capture);
+void acquire_release(struct acquisition *s);
+// Keeps a picture that has no folder, where it is not as its file is. RELUME_ENOMEM, RELUME_EIO.
+relume_status acquire_keep(struct acquisition *s, struct shot *shot,
+                           const struct relume_image *image);
 
 // Finds the photographs, masks and lights that the params name, or that lie beside. An input
 // status.
@@ -156,6 +182,9 @@ bool acquire_has_poses(const char *path);
 relume_status acquire_lights_from_poses(struct acquisition *s);
 // out->photometric by the small photographs; an input status, RELUME_EUNFIT.
 relume_status acquire_fit_small(struct acquisition *s, const relume_capture *capture);
+// Leaves out photographs that are black, though their light stands above the object: misfires.
+// Light from the side and from behind may show nothing. RELUME_EUNFIT when fewer than 3 are left.
+relume_status acquire_leave_black_out(struct acquisition *s);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);
 

@@ -106,12 +106,25 @@ static relume_status check_focus(struct acquisition *s)
     return status;
 }
 
+static void say_outside(const struct acquisition *s)
+{
+    const struct shot *most = &s->shot[0];
+    for (int i = 1; i < s->shots; i++)
+        most = s->shot[i].outside > most->outside ? &s->shot[i] : most;
+    if (most->outside > 0.0f)
+        log_line(s->p.log, RELUME_NOTE,
+                 "%s: by its colour profile %.2g %% of the pixels lie outside sRGB, of no "
+                 "photograph more; they are kept, and .exr pictures show them",
+                 most->path, 100.0 * (double)most->outside);
+}
+
 relume_status acquire_check_pictures(struct acquisition *s)
 {
     relume_status status = check_scene(s);
     if (!status)
         status = check_focus(s);
     int full = 0;
+    say_outside(s);
     for (int i = 0; !status && i < s->shots; i++) {
         const struct shot *shot = &s->shot[i];
         full += shot->saturated > 0.9f;
@@ -119,8 +132,6 @@ relume_status acquire_check_pictures(struct acquisition *s)
             status = acquire_warn_alike(s, ALIKE_SATURATED, (double)shot->saturated,
                                         "%s: %.1f %% of the pixels are overexposed", shot->path,
                                         100.0 * (double)shot->saturated);
-        else if (shot->black > DARK)
-            status = acquire_warn_alike(s, ALIKE_BLACK, 0.0, "%s: black", shot->path);
     }
     if (!status && full == s->shots)
         status = log_fail(s->p.log, RELUME_EUNFIT,
@@ -129,6 +140,20 @@ relume_status acquire_check_pictures(struct acquisition *s)
 }
 
 // ---------------------------------------------------------------- lights
+
+relume_status acquire_leave_black_out(struct acquisition *s)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < s->shots;) {
+        const struct shot *shot = &s->shot[i];
+        const vec3 d = vec3_unit(s->p.near ? shot->position : shot->direction);
+        if (shot->black > DARK && d.z > LOWEST)
+            status = acquire_drop(s, i, true, "black; did its lamp fail?");
+        else
+            i++;
+    }
+    return status;
+}
 
 // The direction farthest from all lights and from the `n` already proposed.
 static double find_gap(const struct relume_acquisition *out, const vec3 *proposed, int n, vec3 *gap)
@@ -185,7 +210,7 @@ static relume_status check_coverage(struct acquisition *s)
     out->wanted_count = n;
     for (int i = 0; i < n && i < SAID; i++)
         at += put_place(places + at, sizeof places - at, i ? "; " : "", out->wanted[i]);
-    if (!n)
+    if (!n || !s->dir)  // who encodes photographs cannot add lamps
         return RELUME_OK;
     return acquire_warn(s, "uneven light: the widest gap is %.0f degrees; add lamps: %s%s",
                         out->gap_deg, places, n > SAID ? "; and more, see report.html" : "");

@@ -616,8 +616,24 @@ static void mention_near(const struct acquisition *s, const struct loaded_lights
                  s->p.lights);
 }
 
+// A list that has been read already, whose lights are in the order of the photographs.
+static void take_listed(struct acquisition *s)
+{
+    for (int i = 0; i < s->shots; i++) {
+        s->shot[i].direction = s->shot[i].position = s->listed->direction[s->shot[i].number];
+        for (int c = 0; c < 3; c++)
+            s->shot[i].intensity[c] = 1.0f;
+    }
+    if (s->listed->turns)
+        turn_lights(s);
+}
+
 static relume_status lights_from_file(struct acquisition *s)
 {
+    if (s->listed) {
+        take_listed(s);
+        return RELUME_OK;
+    }
     struct loaded_lights list = {0};
     bool by_name = false;
     int *order = mem_array((size_t)s->photographs.count, sizeof *order);

@@ -6,6 +6,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/outdir.h"
+#include "core/math/lsq.h"
 
 #include <relume/capture/align.h>
 #include <stdio.h>
@@ -32,17 +33,30 @@ static relume_status shrink(struct relume_image *out, const struct relume_image 
     return RELUME_OK;
 }
 
-static void count_ends(struct shot *shot, const struct relume_image *image, bool floats)
+// Counts the pixels at both ends of the code values, and those whose colour sRGB does not hold.
+static relume_status count_ends(struct shot *shot, const struct relume_image *image)
 {
     const size_t n = (size_t)image->width * (size_t)image->height;
-    size_t white = 0, black = 0;
-    for (size_t i = 0; i < n; i++) {
+    size_t white = 0, black = 0, outside = 0;
+    double m[9];
+    for (int i = 0; i < 9; i++)
+        m[i] = shot->notes.profile ? (double)shot->notes.to_srgb[i] : i % 4 == 0;
+    const relume_status status = lsq_invert(m, 3);
+    for (size_t i = 0; !status && i < n; i++) {
         const float *p = image->data + 3 * i;
-        white += !floats && (p[0] >= WHITE || p[1] >= WHITE || p[2] >= WHITE);
+        float most = 0.0f;  // of the values as the file has them
+        for (int c = 0; c < 3; c++)
+            most = fmaxf(most, (float)m[3 * c] * p[0] + (float)m[3 * c + 1] * p[1] +
+                                   (float)m[3 * c + 2] * p[2]);
+        white += !shot->notes.floats && most >= WHITE;
         black += p[0] <= BLACK && p[1] <= BLACK && p[2] <= BLACK;
+        outside += shot->notes.profile && (fminf(fminf(p[0], p[1]), p[2]) < -BLACK ||
+                                           fmaxf(fmaxf(p[0], p[1]), p[2]) > 1.0f + BLACK);
     }
     shot->saturated = (float)white / (float)n;
     shot->black = (float)black / (float)n;
+    shot->outside = (float)outside / (float)n;
+    return status;
 }
 
 // For registration, before the photograph is moved by it.
@@ -120,9 +134,11 @@ static relume_status align(struct acquisition *s, int i, struct relume_image *im
     return status;
 }
 
-static relume_status save(const struct acquisition *s, const struct shot *shot,
+static relume_status save(struct acquisition *s, struct shot *shot,
                           const struct relume_image *image)
 {
+    if (!s->dir)
+        return acquire_keep(s, shot, image);
     char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
     const relume_status status =
         path ? relume_image_save(image, path, relume_image_params(.log = s->p.log, .half = true))
@@ -200,9 +216,10 @@ static relume_status take_photograph(struct acquisition *s, int i, struct relume
         return status;
     s->width = image->width;
     s->height = image->height;
-    count_ends(shot, image, shot->notes.floats);
+    status = count_ends(shot, image);
     acquire_measure_detail(shot, image);
-    status = acquire_flatten(s, shot, image);
+    if (!status)
+        status = acquire_flatten(s, shot, image);
     if (!status)
         acquire_correct(s, image, shot->notes.floats);
     if (!status)

@@ -54,9 +54,8 @@ void acquire_say_alike(struct acquisition *s)
         for (int i = 0; i < a->count && a->count <= SHOOT_FEW; i++)
             log_line(s->p.log, RELUME_WARNING, "%s", s->out->warning[a->first[i]]);
         if (a->count > SHOOT_FEW)
-            log_line(s->p.log, RELUME_WARNING,
-                     "%s (the worst of %d photographs like it; report.html names all)",
-                     s->out->warning[a->worst], a->count);
+            log_line(s->p.log, RELUME_WARNING, "%s (the worst of %d photographs like it%s)",
+                     s->out->warning[a->worst], a->count, s->dir ? "; report.html names all" : "");
         *a = (struct alike){0};
     }
 }

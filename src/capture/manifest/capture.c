@@ -2,6 +2,7 @@
 #include "capture/manifest/capture.h"
 
 #include "capture/manifest/reflectance_table.h"
+#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/scratch.h"
@@ -12,6 +13,15 @@
 #include <stdio.h>
 #include <string.h>
 
+void changed_picture_free(struct changed_picture *picture)
+{
+    if (picture->mapped)
+        scratch_unmap(picture->halves, picture->mapped);
+    else
+        mem_free(picture->halves);
+    *picture = (struct changed_picture){0};
+}
+
 void relume_capture_destroy(relume_capture **capture)
 {
     if (!*capture)
@@ -20,6 +30,9 @@ void relume_capture_destroy(relume_capture **capture)
     draft_free(&(*capture)->draft);
     if ((*capture)->owned)
         scratch_unmap((*capture)->owned, (*capture)->owned_bytes);
+    for (int i = 0; (*capture)->owned_changed && i < (*capture)->pictured; i++)
+        changed_picture_free(&(*capture)->owned_changed[i]);
+    mem_free((*capture)->owned_changed);
     mem_free((*capture)->path);
     mem_free(*capture);
     *capture = NULL;
@@ -65,8 +78,8 @@ struct picture_array capture_array(const relume_capture *c, int view, int light)
     const int at = c->light_of ? c->light_of[light] : light;
     const size_t index = (size_t)view * (size_t)c->pictured + (size_t)at;
     const size_t size = (size_t)a->width * (size_t)a->height * (size_t)a->channels * bytes;
-    return (struct picture_array){(const char *)a->data + index * size, bytes, a->width, a->height,
-                                  a->channels};
+    return (struct picture_array){
+        (const char *)a->data + index * size, bytes, a->width, a->height, a->channels, false};
 }
 
 // What is read later is found where the capture was.
@@ -78,10 +91,21 @@ static struct relume_log log_of(const relume_capture *c, const struct relume_log
     return own;
 }
 
+// NULL: the picture is as its file.
+static const struct changed_picture *changed_picture_of(const relume_capture *c, int light)
+{
+    const int at = c->light_of ? c->light_of[light] : light;
+    return c->changed && c->changed[at].halves ? &c->changed[at] : NULL;
+}
+
 relume_status capture_picture(picture_reader **out, const relume_capture *c, int view, int light,
                               const struct relume_limits *limits, const struct relume_log *log)
 {
     const struct relume_log own = log_of(c, log);
+    const struct changed_picture *changed = changed_picture_of(c, light);
+    if (changed)
+        return array_picture_open(out, &(const struct picture_array){changed->halves, 2, c->width,
+                                                                     c->height, 3, .halves = true});
     if (!c->pictures.data)
         return picture_open(out, c->draft.m.view[view].images[light], NULL, limits, &own);
     const struct picture_array array = capture_array(c, view, light);
@@ -104,10 +128,14 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
         picture_close(&reader);
         return log_fail(log, RELUME_EUNFIT, "%s: changed while it was being read", path);
     }
-    const relume_status opened =
-        image_stream_open(out, reader, 3, image_transfer(capture->stated, info), to,
-                          m->intensities ? m->intensities[light] : no_gain);
+    struct relume_transfer from = image_transfer(capture->stated, info);
+    if (changed_picture_of(capture, light))
+        from = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
+    const relume_status opened = image_stream_open(
+        out, reader, 3, from, to, m->intensities ? m->intensities[light] : no_gain);
     out->finite_only = !capture->repair;
+    if (!opened && capture->rounded)
+        image_stream_round(out);
     return opened;
 }
 
@@ -117,9 +145,10 @@ void relume_capture_white(const relume_capture *capture, int light, float rgb[3]
     const struct relume_response *response =
         capture->transfer.curve == RELUME_CURVE_RESPONSE ? capture->transfer.response : NULL;
     for (int c = 0; c < 3; c++)
-        rgb[c] = capture->floats ? INFINITY
-                                 : (response ? relume_response_decode(response, c, 1.0f) : 1.0f) /
-                                       (intensities ? intensities[light][c] : 1.0f);
+        rgb[c] = capture->floats && !capture->draft.m.display_coded
+                     ? INFINITY
+                     : (response ? relume_response_decode(response, c, 1.0f) : 1.0f) /
+                           (intensities ? intensities[light][c] : 1.0f);
 }
 
 // A view's plane of an array of all of them.
@@ -146,6 +175,9 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
     const relume_status status = image_load_large(
         out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored),
         capture->scratch);
+    const size_t values = (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; !status && capture->rounded && i < values; i++)
+        out->data[i] = float_from_half(half_from_float(out->data[i]));
     if (status || (out->width == capture->width && out->height == capture->height))
         return status;
     const int width = out->width, height = out->height;

@@ -6,6 +6,14 @@
 #include "capture/manifest/manifest.h"
 #include "image/image/image.h"
 
+// A picture that is not as its file is: turned, in other colours, or moved back. Linear, as a
+// capture's folder holds it.
+struct changed_picture {
+    uint16_t *halves;  // [height][width][3], or NULL: as the file
+    size_t mapped;     // bytes of a mapped file (core/base/scratch.h); 0: memory
+};
+void changed_picture_free(struct changed_picture *picture);
+
 struct relume_capture {
     struct draft draft;
     char *path;
@@ -13,6 +21,9 @@ struct relume_capture {
     int pictured;                     // lights of `pictures`
     void *owned;  // what `pictures` are in, where that is the capture's own (core/base/scratch.h)
     size_t owned_bytes;
+    const struct changed_picture *changed;  // [pictured], or NULL: all are as their files
+    struct changed_picture *owned_changed;  // the same where they are the capture's own
+    bool rounded;         // integers of files are rounded as in a capture's folder
     const int *light_of;  // [lights]: of those; NULL: the same
     int width, height;
     int x, y;     // origin of the images' data windows
@@ -40,6 +51,18 @@ relume_status olat_read_folder(struct draft *out, char **path, const char *folde
 // filled in. Frees `c` on failure.
 relume_status capture_finish(relume_capture **out, relume_capture *c,
                              const struct relume_capture_params *p);
+
+// Photographs in their files, which become the capture that their folder would be.
+struct capture_files {
+    struct draft *draft;              // what capture.json would say, the files being its images; is
+                                      // taken over
+    struct changed_picture *changed;  // [lights], or NULL; belongs to the capture, unless it fails
+    int width, height;
+    bool floats;       // one of them holds floating-point numbers
+    const char *path;  // begins sentences
+};
+relume_status capture_of_files(relume_capture **out, const struct capture_files *files,
+                               const struct relume_capture_params *params);
 
 // One image of a capture of pictures in memory, which follow each other there.
 struct picture_array capture_array(const relume_capture *capture, int view, int light);

@@ -300,6 +300,7 @@ static relume_status find_images(const struct listing *l)
     const bool index = !l->list.name || l->list.numbered;
     if (missing == l->list.count && (index || l->file_count == missing))
         return take_in_order(l);
+    l->d->turns = true;
     return missing && !l->p->skip_missing ? refuse_missing(l, missing) : check_twice(l);
 }
 
@@ -348,6 +349,7 @@ relume_status lp_open(struct draft *out, const char *path, bool project,
         status = list_folder(&l);
     if (!status)
         status = find_images(&l);
+    out->listed = true;
     if (status)
         draft_free(out);
     for (int i = 0; i < l.file_count; i++)

@@ -20,7 +20,7 @@
 struct parser {
     struct draft *d;
     const char *path;
-    char *folder;
+    const char *folder;
     struct relume_limits limits;
     const struct relume_log *log;
     bool allow_outside;
@@ -374,6 +374,15 @@ static relume_status read_transfer(const struct parser *p, const jvalue *value)
     return relume_response_load(response, path, p->log);
 }
 
+static relume_status read_photographs(const struct parser *p, const jvalue *value)
+{
+    const char *text = jvalue_text(value);
+    p->d->m.display_coded = text && !strcmp(text, "display");
+    return !value || jvalue_is_null(value) || text
+               ? RELUME_OK
+               : log_wrong(p->log, p->path, "photographs", "\"display\", or nothing");
+}
+
 static relume_status read_provenance(const struct parser *p, const jvalue *value)
 {
     if (!value || jvalue_is_null(value))
@@ -408,6 +417,8 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
         status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
         status = read_views(p, jvalue_member(root, "views"));
+    if (!status)
+        status = read_photographs(p, jvalue_member(root, "photographs"));
     if (!status)
         status = read_provenance(p, jvalue_member(root, "provenance"));
     draft_publish(d);
@@ -448,6 +459,19 @@ static relume_status refuse_picture(const char *path, const struct relume_log *l
     return RELUME_OK;
 }
 
+// Frees `root`; `out` is empty on failure.
+static relume_status take_root(struct draft *out, jvalue **root, const char *path,
+                               const char *folder, const struct relume_capture_params *params)
+{
+    const struct parser p = {
+        out, path, folder, limits_or_default(params->limits), params->log, params->allow_outside};
+    const relume_status status = read_root(&p, *root);
+    jvalue_free(root);
+    if (status)
+        draft_free(out);
+    return status;
+}
+
 relume_status manifest_read(struct draft *out, const char *path,
                             const struct relume_capture_params *params)
 {
@@ -459,27 +483,26 @@ relume_status manifest_read(struct draft *out, const char *path,
     if (status)
         return status;
     char *copy = mem_text(path);
-    if (copy) {
-        const struct parser p = {out,           path,
-                                 dirname(copy), limits_or_default(params->limits),
-                                 params->log,   params->allow_outside};
-        status = read_root(&p, root);
-    } else {
-        status = RELUME_ENOMEM;
-    }
+    status = copy ? take_root(out, &root, path, dirname(copy), params) : RELUME_ENOMEM;
     mem_free(copy);
     jvalue_free(&root);
-    if (status)
-        draft_free(out);
     return status;
+}
+
+relume_status manifest_parse(struct draft *out, const char *text, const char *path,
+                             const char *folder, const struct relume_capture_params *params)
+{
+    jvalue *root;
+    *out = (struct draft){0};
+    const relume_status status = jvalue_parse(&root, text, params->log);
+    return status ? status : take_root(out, &root, path, folder, params);
 }
 
 relume_status manifest_lights(struct relume_captured_lights *out, const jvalue *root,
                               const char *path, const struct relume_log *log)
 {
     struct draft draft = {0};
-    char no_folder[] = ".";
-    const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log, false};
+    const struct parser p = {&draft, path, ".", limits_or_default(NULL), log, false};
     const jvalue *lights = jvalue_member(root, "lights");
     *out = (struct relume_captured_lights){0};
     // The output of `relume lights --json` has the directions at its top.

@@ -19,6 +19,8 @@ struct draft {
     struct relume_manifest_view *view;
     struct relume_geometry *slab;
     bool has_window;  // the manifest states it, else it follows from the image size
+    bool listed;      // by a list of lights beside photographs, which nothing has looked at
+    bool turns;       // such a list's lights belong to the pictures as they lie in their files
 };
 void draft_free(struct draft *draft);
 
@@ -32,6 +34,13 @@ relume_status lp_open(struct draft *out, const char *path, bool project,
 // A capture.json; paths are made relative to the working folder.
 relume_status manifest_read(struct draft *out, const char *path,
                             const struct relume_capture_params *params);
+
+// The text of a capture.json, to be freed with mem_free(), and what such a text says; NULL and
+// RELUME_ENOMEM without memory. `path` begins the sentences of errors, `folder` the paths of
+// images.
+char *manifest_text(const struct relume_manifest *manifest);
+relume_status manifest_parse(struct draft *out, const char *text, const char *path,
+                             const char *folder, const struct relume_capture_params *params);
 
 // What a draft says, whoever wrote it, is in range; vectors become what the manifest promises, and
 // directions follow from positions where there are none. An input status with a sentence,

@@ -111,10 +111,28 @@ static void put_head(struct jwriter *w, const struct relume_manifest *m)
         jgap(w, "\n  ");
         jput_text(w, "transfer", transfer);
     }
+    if (m->display_coded) {
+        jgap(w, "\n  ");
+        jput_text(w, "photographs", "display");
+    }
     if (m->provenance) {
         jgap(w, "\n  ");
         jput_raw(w, "provenance", m->provenance);
     }
+}
+
+static void put_manifest(struct jwriter *w, const struct relume_manifest *m)
+{
+    jopen_object(w, NULL);
+    put_head(w, m);
+    put_geometry(w, m);
+    put_lights(w, m);
+    jgap(w, "\n  ");
+    jopen_array(w, "views");
+    for (int i = 0; i < m->views; i++)
+        put_view(w, m, &m->view[i]);
+    close_lines(w, "\n  ");
+    jgap(w, "\n");
 }
 
 relume_status relume_manifest_write(const struct relume_manifest *manifest, const char *path,
@@ -125,15 +143,13 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
                         "%s: a response curve lives in a file of its own; expected linear pictures",
                         path);
     struct jwriter w = {0};
-    jopen_object(&w, NULL);
-    put_head(&w, manifest);
-    put_geometry(&w, manifest);
-    put_lights(&w, manifest);
-    jgap(&w, "\n  ");
-    jopen_array(&w, "views");
-    for (int i = 0; i < manifest->views; i++)
-        put_view(&w, manifest, &manifest->view[i]);
-    close_lines(&w, "\n  ");
-    jgap(&w, "\n");
+    put_manifest(&w, manifest);
     return jsave(&w, path, log);
+}
+
+char *manifest_text(const struct relume_manifest *manifest)
+{
+    struct jwriter w = {0};
+    put_manifest(&w, manifest);
+    return jtake(&w, NULL);
 }

@@ -419,6 +419,7 @@ static relume_status draft_of(struct draft *d, const struct relume_photographs *
         if (!(d->view->images[d->m.lights++] = arena_text(&d->arena, list->path[i])))
             return RELUME_ENOMEM;
     }
+    d->listed = true;
     if (d->view->images && list->mask)
         d->view->mask = arena_text(&d->arena, list->mask);
     draft_publish(d);

@@ -197,13 +197,10 @@ static relume_status check_discs(const relume_capture *c, const struct relume_lo
                     c->path, c->width, c->height, g->disc);
 }
 
-static relume_status finish(relume_capture *c, const struct relume_capture_params *p)
+// Fills what follows from the images, whose size and transfer are known.
+static relume_status settle(relume_capture *c, const struct relume_capture_params *p)
 {
-    if (p->transfer.curve != RELUME_CURVE_AUTO)
-        c->draft.m.transfer = p->transfer;
-    relume_status status = check_images(c, p);
-    if (!status)
-        status = check_discs(c, p->log);
+    relume_status status = check_discs(c, p->log);
     if (!status)
         status = image_cache_create(&c->cache, c->draft.m.views * c->draft.m.lights, p->keep_bytes,
                                     p->scratch && p->keep_bytes ? c->limits.max_memory / 2 : 0,
@@ -222,16 +219,55 @@ static relume_status finish(relume_capture *c, const struct relume_capture_param
     return RELUME_OK;
 }
 
-relume_status capture_finish(relume_capture **out, relume_capture *c,
-                             const struct relume_capture_params *p)
+static relume_status take_params(relume_capture *c, const struct relume_capture_params *p)
 {
     c->repair = p->repair;
     c->assume_depth = p->assume_depth;
     c->scratch = p->scratch ? arena_format(&c->draft.arena, "%s", p->scratch) : NULL;
     c->limits = limits_or_default(p->limits);
     c->context = context_of(p->log);
-    const relume_status status = p->scratch && !c->scratch ? RELUME_ENOMEM : finish(c, p);
+    return p->scratch && !c->scratch ? RELUME_ENOMEM : RELUME_OK;
+}
+
+relume_status capture_finish(relume_capture **out, relume_capture *c,
+                             const struct relume_capture_params *p)
+{
+    relume_status status = take_params(c, p);
+    if (p->transfer.curve != RELUME_CURVE_AUTO)
+        c->draft.m.transfer = p->transfer;
+    if (!status)
+        status = check_images(c, p);
+    if (!status)
+        status = settle(c, p);
     if (status)
+        relume_capture_destroy(&c);
+    *out = c;
+    return status;
+}
+
+relume_status capture_of_files(relume_capture **out, const struct capture_files *files,
+                               const struct relume_capture_params *p)
+{
+    relume_capture *c = mem_zeroed(1, sizeof *c);
+    *out = NULL;
+    if (!c)
+        return RELUME_ENOMEM;
+    c->draft = *files->draft;
+    *files->draft = (struct draft){0};
+    c->pictured = c->draft.m.lights;
+    c->width = files->width;
+    c->height = files->height;
+    c->floats = files->floats;
+    c->rounded = true;
+    c->stated = p->transfer;
+    c->transfer = c->draft.m.transfer;
+    c->path = mem_text(files->path);
+    relume_status status = c->path ? take_params(c, p) : RELUME_ENOMEM;
+    if (!status)
+        status = settle(c, p);
+    if (!status)
+        c->changed = c->owned_changed = files->changed;
+    else
         relume_capture_destroy(&c);
     *out = c;
     return status;

@@ -135,10 +135,11 @@ static relume_status open_input(struct relume_change_input *in, relume_capture *
     const char *path = o->args.input[which];
     relume_status status;
     if (relume_kind_of(path) == RELUME_KIND_CAPTURE)
-        status = relume_capture_open(capture, path,
-                                     relume_capture_params(.log = o->args.log,
-                                                           .skip_missing = o->skip_missing,
-                                                           .allow_outside = o->allow_outside));
+        status = relume_capture_open_photographs(
+            capture, path,
+            relume_capture_params(.log = o->args.log, .skip_missing = o->skip_missing,
+                                  .allow_outside = o->allow_outside),
+            NULL, NULL);
     else
         status = relume_open(pack, path,
                              relume_open_params(.log = o->args.log, .threads = o->args.threads,

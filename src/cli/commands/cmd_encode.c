@@ -131,7 +131,7 @@ static relume_status encode(const struct args *args, const char *input, const ch
     struct relume_capture_params own = *open;
     relume_capture *capture;
     own.keep_bytes = relume_encode_rereads(params) ? KEEP_BYTES : 0;
-    relume_status status = relume_capture_open(&capture, input, &own);
+    relume_status status = relume_capture_open_photographs(&capture, input, &own, NULL, NULL);
     if (!status)
         status = relume_encode_capture(output, capture, &result, params);
     if (!status)

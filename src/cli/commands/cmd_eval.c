@@ -97,12 +97,13 @@ static relume_status run_eval(const struct args *args)
         relume_pack_open(&pack, o->args.input[0],
                          relume_pack_params(.log = o->args.log, .threads = o->args.threads));
     if (!status)
-        status =
-            relume_capture_open(&capture, o->args.input[1],
-                                relume_capture_params(.log = o->args.log, .transfer = o->transfer,
-                                                      .skip_missing = o->skip_missing,
-                                                      .allow_outside = o->allow_outside,
-                                                      .assume_depth = o->assume_depth));
+        status = relume_capture_open_photographs(
+            &capture, o->args.input[1],
+            relume_capture_params(.log = o->args.log, .transfer = o->transfer,
+                                  .skip_missing = o->skip_missing,
+                                  .allow_outside = o->allow_outside,
+                                  .assume_depth = o->assume_depth),
+            NULL, NULL);
     if (!status)
         status =
             relume_evaluate(&evaluation, pack, capture,

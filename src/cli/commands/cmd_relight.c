@@ -451,9 +451,10 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     if (!free_eye && lens)
         params.interpolation = RELUME_INTERPOLATE_LINEAR;
     if (o->capture)
-        status = relume_capture_open(
+        status = relume_capture_open_photographs(
             &capture, o->capture,
-            relume_capture_params(.log = o->args.log, .allow_outside = o->allow_outside));
+            relume_capture_params(.log = o->args.log, .allow_outside = o->allow_outside), NULL,
+            NULL);
     params.capture = capture;
     if (!status)
         status = place_eye(camera, pack, o);

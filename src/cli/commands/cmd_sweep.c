@@ -534,11 +534,12 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
 static relume_status open_capture(const struct sweep_options *o, const char *path, size_t keep,
                                   relume_capture **out)
 {
-    return relume_capture_open(out, path,
-                               relume_capture_params(.log = o->args.log, .transfer = o->transfer,
-                                                     .skip_missing = o->skip_missing,
-                                                     .allow_outside = o->allow_outside,
-                                                     .keep_bytes = keep));
+    return relume_capture_open_photographs(
+        out, path,
+        relume_capture_params(.log = o->args.log, .transfer = o->transfer,
+                              .skip_missing = o->skip_missing, .allow_outside = o->allow_outside,
+                              .keep_bytes = keep),
+        NULL, NULL);
 }
 
 static relume_status run_sweep(const struct args *args)

@@ -159,11 +159,12 @@ static relume_status fit_capture(struct relume_maps *maps, const struct maps_opt
                                  const struct relume_maps_params *p)
 {
     relume_capture *capture;
-    relume_status status = relume_capture_open(
+    relume_status status = relume_capture_open_photographs(
         &capture, o->args.input[0],
         relume_capture_params(.log = o->args.log, .transfer = o->transfer,
                               .skip_missing = o->skip_missing, .allow_outside = o->allow_outside,
-                              .keep_bytes = KEEP_BYTES));
+                              .keep_bytes = KEEP_BYTES),
+        NULL, NULL);
     if (!status)
         status = relume_maps_fit(maps, capture, p);
     relume_capture_destroy(&capture);

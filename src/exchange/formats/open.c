@@ -13,6 +13,7 @@
 
 #include <errno.h>
 #include <relume/capture.h>
+#include <relume/capture/acquire.h>
 #include <relume/encode.h>
 #include <relume/image/photograph.h>
 #include <stdio.h>
@@ -26,8 +27,9 @@
 static relume_status encode(const char *path, const char *out, const struct relume_open_params *p)
 {
     relume_capture *capture;
-    relume_status status = relume_capture_open(
-        &capture, path, relume_capture_params(.log = p->log, .allow_outside = p->allow_outside));
+    relume_status status = relume_capture_open_photographs(
+        &capture, path, relume_capture_params(.log = p->log, .allow_outside = p->allow_outside),
+        NULL, NULL);
     if (!status)
         status = relume_encode_capture(
             out, capture, NULL,

@@ -514,9 +514,9 @@ enum relume_domain relume_capture_domain(const relume_capture *capture, enum rel
 {
     if (domain != RELUME_DOMAIN_AUTO)
         return domain;
-    return relume_capture_manifest(capture)->transfer.curve == RELUME_CURVE_LINEAR
-               ? RELUME_DOMAIN_LINEAR
-               : RELUME_DOMAIN_DISPLAY;
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    return m->transfer.curve == RELUME_CURVE_LINEAR && !m->display_coded ? RELUME_DOMAIN_LINEAR
+                                                                         : RELUME_DOMAIN_DISPLAY;
 }
 
 struct relume_transfer relume_encode_display(const relume_capture *capture)

@@ -90,10 +90,12 @@ static float decode(struct relume_transfer transfer, int channel, float code)
 
 static float recode(const struct image_stream *s, int channel, float code)
 {
-    if (s->gain[channel] == 1.0f && is_same(s->from, s->to))
+    if (s->gain[channel] == 1.0f && is_same(s->from, s->to) && !s->rounded)
         return code;
-    const float linear = decode(s->from, channel, code) / s->gain[channel];
-    return relume_transfer_encode(s->to, linear);
+    float linear = decode(s->from, channel, code);
+    if (s->rounded)
+        linear = float_from_half(half_from_float(linear));
+    return relume_transfer_encode(s->to, linear / s->gain[channel]);
 }
 
 static bool is_plain(const struct image_stream *s, const struct picture_info *info)
@@ -105,6 +107,14 @@ static bool is_plain(const struct image_stream *s, const struct picture_info *in
             plain = plain && s->table[c][v] == (float)v / 255.0f;
     }
     return plain;
+}
+
+static void make_tables(struct image_stream *s)
+{
+    for (int c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            s->table[c][v] = recode(s, c, (float)v / 255.0f);
+    s->plain = is_plain(s, picture_info_of(s->reader));
 }
 
 relume_status image_stream_open(struct image_stream *stream, picture_reader *reader, int channels,
@@ -125,12 +135,17 @@ relume_status image_stream_open(struct image_stream *stream, picture_reader *rea
         image_stream_close(stream);
         return RELUME_ENOMEM;
     }
-    for (int c = 0; c < 3; c++)
-        for (int v = 0; v < 256; v++)
-            stream->table[c][v] = recode(stream, c, (float)v / 255.0f);
-    stream->plain = is_plain(stream, info);
+    make_tables(stream);
     stream->unpack = kernels_choose(0)->unpack;
     return RELUME_OK;
+}
+
+void image_stream_round(struct image_stream *stream)
+{
+    if (picture_info_of(stream->reader)->floats)
+        return;
+    stream->rounded = true;
+    make_tables(stream);
 }
 
 void image_stream_close(struct image_stream *stream)

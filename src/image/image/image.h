@@ -39,6 +39,7 @@ struct image_stream {
     struct relume_transfer from, to;
     float gain[3];
     bool finite_only;     // NaN and infinity are errors; to be set after opening
+    bool rounded;         // integers are rounded to half floats as linear light
     float table[3][256];  // per channel, for 8-bit files
     bool plain;           // 8-bit files: the tables are code / 255, pixels R, G, B
     const struct unpack_kernels *unpack;
@@ -52,6 +53,8 @@ struct image_stream {
 relume_status image_stream_open(struct image_stream *stream, picture_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3]);
+// Integers become what they are once they were linear half floats in a file.
+void image_stream_round(struct image_stream *stream);
 // out[row][x][channel]. Rows that are not kept come in the order of picture_read_floats; other
 // orders and rows that are not there are RELUME_EINVAL. An input status; `error` has the sentence.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);

@@ -28,6 +28,7 @@ struct picture_array {
     const void *data;
     size_t bytes;  // of a sample
     int width, height, channels;
+    bool halves;  // those of 2 bytes are half floats, no codes
 };
 // The same for those. RELUME_ENOMEM.
 relume_status array_picture_open(picture_reader **out, const struct picture_array *array);

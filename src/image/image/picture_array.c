@@ -1,4 +1,5 @@
 // picture_array.c - samples in memory, read as a picture file is
+#include "core/base/half.h"
 #include "core/base/memory.h"
 #include "image/image/picture.h"
 #include "image/image/picture_format.h"
@@ -31,14 +32,16 @@ static relume_status read_floats(picture_reader *reader, int row, int rows, floa
 {
     size_t n;
     const char *from = find_rows(reader, row, rows, &n);
-    if (reader->info.floats)
+    const bool halves = ((const struct array_picture *)reader)->array.halves;
+    if (reader->info.floats && !halves) {
         memcpy(out, from, n * sizeof *out);
-    else
-        for (size_t i = 0; i < n; i++) {
-            uint16_t code;  // which a program may have put at any address
-            memcpy(&code, from + i * sizeof code, sizeof code);
-            out[i] = (float)code / 65535.0f;
-        }
+        return RELUME_OK;
+    }
+    for (size_t i = 0; i < n; i++) {
+        uint16_t code;  // which a program may have put at any address
+        memcpy(&code, from + i * sizeof code, sizeof code);
+        out[i] = halves ? float_from_half(code) : (float)code / 65535.0f;
+    }
     return RELUME_OK;
 }
 
@@ -58,7 +61,7 @@ static const struct picture_format format = {
 
 relume_status array_picture_open(picture_reader **out, const struct picture_array *array)
 {
-    const bool floats = array->bytes == sizeof(float);
+    const bool floats = array->halves || array->bytes == sizeof(float);
     const int last = array->channels >= 3 ? 2 : 0;
     struct array_picture *p = mem_zeroed(1, sizeof *p);
     *out = p ? &p->reader : NULL;

@@ -131,14 +131,13 @@ RELUME_RESULT relume_status relume_capture_photographs(const char *dir,
                                                        const struct relume_acquire_params *params,
                                                        struct relume_acquisition *report);
 
-// Opens what relume_capture_open opens. A list of photographs (a .lp file with three or more, or
-// its folder) passes the steps above on the way: what is open then equals the folder that they
-// would make of the same photographs and `lights`, byte for byte when it is encoded, but lies in
-// the files that are there. Photographs of another orientation, colour space or place are kept in
-// memory up to params->keep_bytes, then in temporary files beside params->scratch. The log, limits
-// and transfer are those of `params`; `acquire` may be NULL, and nothing of it that makes files is
-// looked at. `report` as above; it stays empty for other captures. An input status, those of
-// relume_capture_photographs.
+// Opens a capture as relume_capture_open does. The photographs of a list, a .lp file with three or
+// more or its folder, pass the steps above on the way, and stay in their files. The capture equals
+// the folder that relume_capture_photographs makes with the list as `lights`: encoded, they have
+// the same bytes. Turned and moved photographs, and those of another colour space, are kept in
+// memory up to params->keep_bytes, then in temporary files beside params->scratch. `acquire` may be
+// NULL; its log, limits, transfer and output are ignored. `report` may be NULL; it is empty for
+// other captures. An input status, those of relume_capture_photographs.
 RELUME_RESULT relume_status relume_capture_open_photographs(
     relume_capture **out, const char *path, const struct relume_capture_params *params,
     const struct relume_acquire_params *acquire, struct relume_acquisition *report);

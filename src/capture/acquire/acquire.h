@@ -116,9 +116,9 @@ static inline bool acquire_keeps_surface(const struct acquisition *s)
     return s->p.surface || s->p.normals || s->p.albedo || s->p.height;
 }
 
-// The steps of relume_capture_photographs, from params and photographs on: inputs are found,
-// pictures read and looked at, lights found; then what capture.json says can be used, and the
-// photographs are compared with their lights. An input status and those of
+// The steps of relume_capture_photographs. acquire_begin finds the inputs, acquire_look reads the
+// pictures and finds the lights, acquire_describe gives `use` what capture.json says, acquire_fit
+// compares the photographs with their lights. An input status and those of
 // relume_capture_photographs.
 relume_status acquire_begin(struct acquisition *s, const char *const *photographs, int count);
 relume_status acquire_look(struct acquisition *s);

@@ -35,10 +35,10 @@ relume_status lp_open(struct draft *out, const char *path, bool project,
 relume_status manifest_read(struct draft *out, const char *path,
                             const struct relume_capture_params *params);
 
-// The text of a capture.json, to be freed with mem_free(), and what such a text says; NULL and
-// RELUME_ENOMEM without memory. `path` begins the sentences of errors, `folder` the paths of
-// images.
+// Returns the text of a capture.json, to be freed with mem_free(), or NULL without memory.
 char *manifest_text(const struct relume_manifest *manifest);
+// Reads such a text, whose images lie in `folder`; sentences name `path`. An input status,
+// RELUME_ENOMEM.
 relume_status manifest_parse(struct draft *out, const char *text, const char *path,
                              const char *folder, const struct relume_capture_params *params);
 

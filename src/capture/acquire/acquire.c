@@ -379,9 +379,8 @@ static relume_status check_balls(const struct acquisition *s)
     const char *what = more ? "photograph of the object" : "photograph of the ball";
     if (balls == 1)
         return log_fail(s->p.log, RELUME_EUNFIT,
-                        "1 photograph of the ball, %d of the object; expected one for each; give "
-                        "the folder of the ball's photographs, not its files (a shell's * leaves "
-                        "all but the first to the object)",
+                        "1 photograph of the ball, %d of the object; expected one for each; name "
+                        "those of the object first, then --ball-photos and those of the ball",
                         objects);
     if (odd)
         return log_fail(s->p.log, RELUME_EUNFIT,

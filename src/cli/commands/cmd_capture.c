@@ -33,8 +33,8 @@ static const struct option options[] = {
     POINTS("--ball", ball, "x,y,r",
            "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
     INT("--balls", balls, "N", "number of balls to look for; default: 1", 1, 16),
-    TEXTS("--ball-photos", ball_photos, "PATH",
-          "separate photographs of the ball: a folder, or one file (repeat the option for more)"),
+    FILES("--ball-photos", ball_photos, "PATH...",
+          "separate photographs of the ball: a folder, or files up to the next option"),
     TRANSFER("--ball-transfer", ball_transfer,
              "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file"),
     TEXT("--ball-mask", ball_mask, "FILE", "a mask: white where the ball is"),
@@ -65,8 +65,8 @@ static const struct option options[] = {
             "outer corners of the target's four corner patches, pixels; default: found", 8),
     TEXT("--target-values", target_values, "FILE",
          "24 lines L* a* b* (D50) of your own target; default: the published ones"),
-    TEXTS(
-        "--flat", flat, "PATH",
+    FILES(
+        "--flat", flat, "PATH...",
         "photograph of an even white surface: removes uneven light; one, or one under each light"),
     FLAG("--radial", radial,
          "--flat: use only how it falls off from the middle, as a smooth curve"),

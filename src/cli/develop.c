@@ -18,3 +18,18 @@ relume_status develop(struct relume_image *frame, const struct develop_options *
         frame->data[i] *= gain;
     return RELUME_OK;
 }
+
+relume_status check_bits(const struct develop_options *o, const char *path)
+{
+    if (o->bits == BITS_8 || has_words(path))
+        return RELUME_OK;
+    return usage_error("--bits 16: expected an output that ends in .png or .tif; found '%s'", path);
+}
+
+relume_status save_developed(const struct relume_image *frame, const struct develop_options *o,
+                             const char *path, const struct relume_log *log)
+{
+    return relume_image_save(frame, path,
+                             relume_image_params(.log = log, .profile = o->icc,
+                                                 .bits = o->bits == BITS_16 ? 16 : 8));
+}

@@ -14,4 +14,27 @@ for out in star before; do same "they are the same ($out)" folder/light0004.exr 
 expect_ok 'a folder stands alone' 'lights; see report.html' "$RELUME" capture --flat flats photos --lights photos/lights.lp -o alone
 same 'the photographs behind it are those of the object' folder/light0004.exr alone/light0004.exr
 expect_ok 'the photographs alone are not taken' 'lights; see report.html' "$RELUME" capture --flat flats/light0000.exr photos -o one
+
+# ---- 16 bits in .png and .tif
+depth() { "$mkimage" maxdiff "$1" "$2"; }
+expect_ok 'normals, heights' '/height.png: 0 is a height of -[0-9.]+ world units, 65535 of' "$RELUME" capture photos -o fine \
+    --normals "$PWD/normals.tif" --height "$PWD/height.png"
+relume capture photos -o exact --normals normals.exr --height height.exr
+relume encode exact -o dome.exr
+for kind in png tif; do
+    relume relight dome.exr -o deep.$kind --bits 16 --exposure -1
+    relume relight dome.exr -o flat.$kind --exposure -1
+    differ "$kind: 16 bits are other bytes" deep.$kind flat.$kind
+done
+same '8 bits are the default' flat.png "$(relume relight dome.exr -o eight.png --bits 8 --exposure -1 && echo eight.png)"
+relume relight dome.exr -o dome-float.exr --exposure -1
+# linear light of codes of 16 bits: half a step of 1/65535 times the slope of sRGB at white, 2.3
+for kind in png tif; do below "$kind: within 16 bits" "$(depth deep.$kind dome-float.exr)" 0.00002; done
+expect_fail '16 bits of a JPEG' 2 '--bits 16: expected an output that ends in .png or .tif' a.jpg "$RELUME" relight dome.exr -o a.jpg --bits 16
+# codes are (n + 1) / 2, from the lowest place to the highest; read as they are
+code() { # file, x, y: codes of 16 bits
+    "$mkimage" read "$1" "$2" "$3" | awk '{ for (i = 1; i <= NF; i++) { v = $i <= 0.0031308 ? 12.92 * $i : 1.055 * exp(log($i) / 2.4) - 0.055; printf "%.5f ", v } }'
+}
+below 'normals' "$(echo "$(code normals.tif 12 8) $("$mkimage" read normals.exr 12 8)" |
+    awk '{ for (i = 1; i <= 3; i++) { d = 2 * $i - 1 - $(i + 3); m = d * d > m ? d * d : m } print sqrt(m) }')" 0.0001
 finish

@@ -416,7 +416,7 @@ static const char *find_conflict(const struct relume_acquire_params *p)
     if (p->target_corner && !p->target)
         return "--target-corners needs --target FILE";
     if (p->width_mm > 0.0 && !p->height)
-        return "--width needs --height FILE.exr";
+        return "--width needs --height FILE";
     return NULL;
 }
 

@@ -476,8 +476,7 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     if (!status && o->alpha)
         status = add_alpha(&frame, pack, camera);
     if (!status)
-        status = relume_image_save(
-            &frame, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
+        status = save_developed(&frame, &o->develop, o->output, o->args.log);
     relume_image_destroy(&frame);
     relume_renderer_destroy(&renderer);
     relume_objects_destroy(&objects);
@@ -556,8 +555,7 @@ static relume_status draw_scene(const struct relight_options *o, const struct re
     if (!status)
         status = develop(&frame, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(
-            &frame, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
+        status = save_developed(&frame, &o->develop, o->output, o->args.log);
     relume_image_destroy(&frame);
     relume_tableau_destroy(&tableau);
     return status;
@@ -569,6 +567,8 @@ static relume_status run_scene(const struct relight_options *o)
     const struct relume_light *lights;
     int count;
     relume_status status = check_scene(o);
+    if (!status)
+        status = check_bits(&o->develop, o->output);
     if (!status)
         status = parse_lights(&o->args, &o->lighting, &rig, &lights, &count);
     if (!status)
@@ -612,6 +612,8 @@ static relume_status run_relight(const struct args *args)
     relume_status status = parse_camera(o, &camera);
     if (!status)
         status = check_pass(o);
+    if (!status)
+        status = check_bits(&o->develop, o->output);
     if (!status)
         status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)

@@ -29,8 +29,7 @@ static relume_status run_tonemap(const struct args *args)
     if (!status)
         status = develop(&image, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(
-            &image, o->output, relume_image_params(.log = args->log, .profile = o->develop.icc));
+        status = save_developed(&image, &o->develop, o->output, args->log);
     relume_image_destroy(&image);
     return status;
 }

@@ -37,4 +37,15 @@ code() { # file, x, y: codes of 16 bits
 }
 below 'normals' "$(echo "$(code normals.tif 12 8) $("$mkimage" read normals.exr 12 8)" |
     awk '{ for (i = 1; i <= 3; i++) { d = 2 * $i - 1 - $(i + 3); m = d * d > m ? d * d : m } print sqrt(m) }')" 0.0001
+
+# ---- a picture under every captured light
+expect_ok 'every light' 'every: 20 pictures, one for each captured light' "$RELUME" relight dome.exr --every-light -o every
+check 'as many pictures' test "$(ls every | wc -l)" -eq 20
+relume relight dome.exr -o fifth.png --light "dir $(sed -n 6p dome/dirs.lp | cut -d' ' -f2-)"
+above 'the fifth is that of the fifth light' "$(psnr every/light0004.png fifth.png)" 60
+expect_fail 'a folder that is there' 2 'every: already exists' - "$RELUME" relight dome.exr --every-light -o every
+expect_ok 'another format' - "$RELUME" relight dome.exr --every-light -o every --force --format tif --bits 16 --size 12
+check 'replaces them' test "$(ls every/*.tif | wc -l)" -eq 20
+expect_fail 'a light besides' 2 'every-light: leave out --light' - "$RELUME" relight dome.exr --every-light -o more --light 'dir 0 0 1'
+expect_fail 'a format of one picture' 2 'format and --force work only with --every-light' - "$RELUME" relight dome.exr -o a.png --format png
 finish

@@ -48,4 +48,27 @@ expect_ok 'another format' - "$RELUME" relight dome.exr --every-light -o every -
 check 'replaces them' test "$(ls every/*.tif | wc -l)" -eq 20
 expect_fail 'a light besides' 2 'every-light: leave out --light' - "$RELUME" relight dome.exr --every-light -o more --light 'dir 0 0 1'
 expect_fail 'a format of one picture' 2 'format and --force work only with --every-light' - "$RELUME" relight dome.exr -o a.png --format png
+
+# ---- the same photograph twice
+fresh photos twice && cp twice/light0003.jpg twice/light0011.jpg
+expect_ok 'a photograph twice' 'twice/light0003.jpg and twice/light0011.jpg are the same photograph' "$RELUME" capture twice -o twins
+
+# ---- a TIFF of many pages
+"$mkimage" pages stack.tif photos/*.jpg
+expect_ok 'a photograph on each page' 'stack: 20 lights' "$RELUME" capture stack.tif --lights dome/dirs.lp -o stack
+mkdir single && "$mkimage" tiff 16 3 single photos/*.jpg
+relume capture single --lights dome/dirs.lp -o singles
+for i in 00 07 19; do same "page $i" stack/light00$i.exr singles/light00$i.exr; done
+check 'the page is named' grep -q '"file": "stack.tif#8"' stack/capture.json
+"$mkimage" pages one.tif photos/light0000.jpg
+expect_fail 'a TIFF of one page' 1 '1 photograph; expected at least 3' out "$RELUME" capture one.tif --lights dome/dirs.lp -o out
+
+# ---- folders
+mkdir -p above/left above/right above/notes && cp photos/*.jpg above/left && cp photos/light000*.jpg above/right && touch above/notes/a.txt
+expect_fail 'photographs one folder below' 1 'above: no photographs; folders below have some: left .20., right .10.; try' out "$RELUME" capture above -o out
+cp photos/* above
+expect_ok 'folders beside photographs' 'above: folders below are left out, with photographs: left .20., right .10.' "$RELUME" capture above -o beside
+mkdir tiles && cp photos/*.jpg tiles && echo '<MultiRes>' >tiles/info.xml
+expect_fail 'tiles of WebRTI: capture' 1 'tiles: tiles of WebRTI .info.xml., .*; expected the .ptm or .rti' out "$RELUME" capture tiles -o out
+not_encoded 'tiles of WebRTI: encode' 'tiles: tiles of WebRTI .info.xml., .*; expected the .ptm or .rti' tiles
 finish

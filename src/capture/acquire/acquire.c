@@ -118,7 +118,15 @@ static relume_status fill_result(struct acquisition *s)
 
 static struct relume_geometry geometry_of(const struct acquisition *s)
 {
-    struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->width, s->height);
+    struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->whole[0], s->whole[1]);
+    const int *crop = s->out->crop;
+    const double pixel = (g.window_max[0] - g.window_min[0]) / s->whole[0];
+    if (crop[2]) {
+        g.window_min[0] += pixel * crop[0];
+        g.window_max[0] = g.window_min[0] + pixel * crop[2];
+        g.window_max[1] -= pixel * crop[1];
+        g.window_min[1] = g.window_max[1] - pixel * crop[3];
+    }
     g.perspective = s->p.fov_deg > 0.0;
     if (g.perspective)
         g.camera_z = 1.0 / tan(s->p.fov_deg * M_PI / 360.0);
@@ -177,9 +185,11 @@ static relume_status copy_mask(const struct acquisition *s, const char *path)
     relume_status status = relume_image_load(
         &mask, s->p.mask,
         relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
-    if (!status && (mask.width != s->width || mask.height != s->height))
+    if (!status && (mask.width != s->whole[0] || mask.height != s->whole[1]))
         status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
-                          s->p.mask, mask.width, mask.height, s->width, s->height);
+                          s->p.mask, mask.width, mask.height, s->whole[0], s->whole[1]);
+    if (!status && s->out->crop[2])
+        status = acquire_crop_image(&mask, s->out->crop);
     if (!status)
         status = relume_image_save(&mask, path, relume_image_params(.log = s->p.log, .half = true));
     relume_image_destroy(&mask);
@@ -319,6 +329,8 @@ static relume_status fill_folder(struct acquisition *s)
     if (!status)
         status = acquire_whiten(s);
     if (!status)
+        status = acquire_crop(s);
+    if (!status)
         status = fill_result(s);
     if (!status)
         status = acquire_check_lights(s);
@@ -397,6 +409,8 @@ static relume_status check_balls(const struct acquisition *s)
 // Returns a sentence about members that need or exclude each other, NULL where all agree.
 static const char *find_conflict(const struct relume_acquire_params *p)
 {
+    if (p->crop_auto && (p->crop[2] || p->crop[3]))
+        return "expected one of --crop x,y,w,h and --crop auto";
     if (p->fov_deg > 0.0 && p->focal_mm > 0.0)
         return "expected one of --fov and --focal";
     if (p->refine_brightness && p->refine_lights)

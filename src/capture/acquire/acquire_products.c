@@ -86,7 +86,7 @@ static relume_status save_height(const struct acquisition *s)
         status = relume_height_integrate(
             &height, &surface->normal,
             relume_height_params(.log = s->p.log,
-                                 .pixel = (s->p.width_mm > 0.0 ? s->p.width_mm : 2.0) / s->width,
+                                 .pixel = (s->p.width_mm > 0.0 ? s->p.width_mm : 2.0) / s->whole[0],
                                  .threads = s->p.threads, .confidence = &surface->confidence));
     if (!status)
         status = save_heights(s, &height);

@@ -32,6 +32,11 @@ static relume_status shrink(struct relume_image *out, const struct relume_image 
     return RELUME_OK;
 }
 
+relume_status acquire_shrink(struct relume_image *out, const struct relume_image *from)
+{
+    return shrink(out, from, SHOT_SMALL);
+}
+
 static void count_ends(struct shot *shot, const struct relume_image *image, bool floats)
 {
     const size_t n = (size_t)image->width * (size_t)image->height;
@@ -214,7 +219,7 @@ static relume_status take_photograph(struct acquisition *s, int i, struct relume
     if (!status)
         status = align(s, i, image);
     if (!status)
-        status = shrink(&shot->small, image, SHOT_SMALL);
+        status = acquire_shrink(&shot->small, image);
     if (!status && !shot->ball_path && !s->p.lights)
         status = add_to_mean(s, image);
     return status ? status : save(s, shot, image);

@@ -126,6 +126,12 @@ char *acquire_provenance(const struct acquisition *s)
     for (int i = 0; i < s->shots; i++)
         put_photograph(&w, &s->shot[i]);
     jclose(&w);
+    if (s->out->crop[2]) {
+        jopen_array(&w, "crop");  // of the photographs as they are upright
+        for (int i = 0; i < 4; i++)
+            jput_integer(&w, NULL, s->out->crop[i]);
+        jclose(&w);
+    }
     if (s->out->target)
         put_chart(&w, s);
     return jtake(&w, NULL);

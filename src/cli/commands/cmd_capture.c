@@ -2,12 +2,17 @@
 #include "cli/frame_options.h"
 
 #include <math.h>
+#include <string.h>
 
 struct capture_options {
     struct args args;
     const char *output, *mask, *ball_mask, *lights, *normals, *albedo, *height, *encode, *relight;
     struct relume_transfer transfer, ball_transfer;
     double white[4], target_corners[8];
+    struct crop {
+        bool automatic;
+        int part[4];
+    } crop;
     const char *target, *target_values;
     enum { ALIGN_AUTO, ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
@@ -20,6 +25,21 @@ struct capture_options {
 };
 #define OPTIONS struct capture_options
 
+static relume_status take_crop(void *place, const struct option *o, const char *text,
+                               const struct relume_log *log)
+{
+    struct crop crop = {.automatic = !strcmp(text, "auto")};
+    int end = -1;
+    const int n = sscanf(text, "%d,%d,%d,%d%n", &crop.part[0], &crop.part[1], &crop.part[2],
+                         &crop.part[3], &end);
+    const bool good = n == 4 && end == (int)strlen(text) && crop.part[2] > 0 && crop.part[3] > 0;
+    memcpy(place, &crop, sizeof crop);
+    return crop.automatic || good
+               ? RELUME_OK
+               : say(log, RELUME_EINVAL,
+                     "%s: expected auto, or four whole numbers x,y,w,h; found '%s'", o->name, text);
+}
+
 static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_OUTPUT, output, "DIR", "the capture folder to make"),
@@ -28,6 +48,8 @@ static const struct option options[] = {
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; default: by file"),
     TEXT("--mask", mask, "FILE", "a mask: white where the object is"),
+    OWN("--crop", crop, "x,y,w,h",
+        "keep this part of the photographs, or auto: the object without ball and table", take_crop),
     FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),
     GROUP("finding the lights"),
     POINTS("--ball", ball, "x,y,r",
@@ -78,7 +100,7 @@ static const struct option options[] = {
     TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),
     TEXT_AS(OPTION_FLOATS, "--height", height, "FILE",
             "write the surface's height, as --normals; in --width's millimetres, or world units"),
-    NUMBER("--width", width, "MM", "width of the picture in millimetres: --height in millimetres",
+    NUMBER("--width", width, "MM", "width of the photographs in millimetres: --height in millimetres",
            1e-6, 1e9),
     TEXT_AS(OPTION_RELUME, "--encode", encode, "FILE.exr",
             "also encode the capture to this relume file"),
@@ -139,6 +161,9 @@ static struct relume_acquire_params read_options(const struct capture_options *o
         .height = o->height,
         .width_mm = o->width,
     };
+    p.crop_auto = o->crop.automatic;
+    for (int i = 0; i < 4 && !o->crop.automatic; i++)
+        p.crop[i] = o->crop.part[i];
     for (int i = 0; i < 4; i++)
         p.white[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
     return p;
@@ -252,6 +277,12 @@ static void print_json(const struct relume_acquisition *s)
     jput_integer(&w, "left_out", s->left_out);
     jput_integer(&w, "width", s->width);
     jput_integer(&w, "height", s->height);
+    if (s->crop[2]) {
+        jopen_array(&w, "crop");
+        for (int i = 0; i < 4; i++)
+            jput_integer(&w, NULL, s->crop[i]);
+        jclose(&w);
+    }
     put_balls(&w, s);
     jput_number(&w, "gap_deg", s->gap_deg, 6);
     jput_number(&w, "residual", measured ? s->photometric.residual : (double)NAN, 9);

@@ -6,7 +6,7 @@
 relume_status develop(struct relume_image *frame, const struct develop_options *o, const char *path)
 {
     const struct relume_tone_params tone = {
-        .exposure_ev = isnan(o->exposure) ? relume_tone_meter(frame) : o->exposure,
+        .exposure_ev = isnan(o->exposure) ? relume_tone_meter_for(frame, o->tone) : o->exposure,
         .tone = o->tone,
         .white = o->white,
     };

@@ -12,7 +12,7 @@ struct develop_options {
 };
 // Table rows for a command's options; `develop` in its struct.
 #define DEVELOP_OPTIONS                                                                            \
-    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto: mid grey; default: 0",               \
+    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto, by the picture; default: 0",               \
                  "linear (clip, default), reinhard, filmic or gamma; .exr, .hdr and .pfm stay "    \
                  "linear")
 #define DEVELOP_ROWS(exposure_help, tone_help)                                                     \

@@ -71,4 +71,18 @@ expect_ok 'folders beside photographs' 'above: folders below are left out, with 
 mkdir tiles && cp photos/*.jpg tiles && echo '<MultiRes>' >tiles/info.xml
 expect_fail 'tiles of WebRTI: capture' 1 'tiles: tiles of WebRTI .info.xml., .*; expected the .ptm or .rti' out "$RELUME" capture tiles -o out
 not_encoded 'tiles of WebRTI: encode' 'tiles: tiles of WebRTI .info.xml., .*; expected the .ptm or .rti' tiles
+
+# ---- raking light
+mkdir board && for i in 1 2 3 4 5 6; do "$mkimage" plane dome/view00/light0000.jpg board/$i.exr 0.3$i; done
+printf '%s\n' '.6 0 .8' '-.6 0 .8' '0 .6 .8' '0 -.6 .8' '.5 .5 .7' '-.5 .5 .7' >board/lights.txt
+for f in board/*.exr; do "$mkimage" gain "$f" dim.exr 0.1 && mv dim.exr "$f"; done
+relume capture board --lights board/lights.txt -o board_capture
+relume encode board_capture -o board.exr --basis table
+expect_ok 'a dark picture is named' 'low.png: nearly black, its bright parts are [0-9.]+ % of white; --exposure auto adds [0-9.]+ stops; the light stands 11 degrees above the picture, the lowest photographed one 45' \
+    "$RELUME" relight board.exr -o low.png --light 'dir 1 0 0.2'
+relume relight board.exr -o seen.exr --light 'dir 1 0 0.2' --exposure auto
+# steps of 1/16 EV
+below 'and exposed to 0.9' "$("$mkimage" read seen.exr 5 5 | awk '{ d = $1 - 0.9; print d < 0 ? -d : d }')" 0.03
+relume relight dome.exr -o lit.png
+check 'a bright one is not' test ! -s err.txt
 finish

@@ -430,6 +430,55 @@ static relume_status place_eye(struct relume_camera *camera, relume_pack *pack,
     return status;
 }
 
+static double elevation(struct relume_vec3 d)
+{
+    return atan2(d.z, hypot(d.x, d.y)) * 180.0 / M_PI;
+}
+
+// Says how far below the lowest captured light that of a raking picture stands; "": it does not.
+static void describe_low_light(char text[160], const struct relight_options *o,
+                               const struct relume_pack_info *info)
+{
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
+    const struct relume_light *light;
+    relume_rig *rig = NULL;
+    double low = 90.0, lowest = 90.0;
+    int n = 0;
+    *text = '\0';
+    if (info->geometry.projection != RELUME_PLANAR ||
+        parse_lights(&o->args, &o->lighting, &rig, &light, &n))
+        return;
+    for (int i = 0; i < n; i++)
+        if (light[i].kind == RELUME_LIGHT_DIRECTIONAL)
+            low = fmin(low, elevation(light[i].direction));
+    for (int i = 0; i < coder->lights; i++)
+        lowest = fmin(lowest, elevation(coder->directions[i]));
+    if (low < lowest)
+        snprintf(text, 160,
+                 "; the light stands %.0f degrees above the picture, the lowest photographed one "
+                 "%.0f",
+                 low, lowest);
+    relume_rig_destroy(&rig);
+}
+
+// Raking light leaves some surfaces nearly black.
+static void note_darkness(const struct relume_image *frame, const struct relight_options *o,
+                          const struct relume_pack_info *info, const char *path)
+{
+    static const double bright = 0.9, dark = 0.1;  // relume_tone_meter_bright; of white
+    char low[160];
+    const double ev = relume_tone_meter_bright(frame);
+    const double top = bright * exp2(-ev);
+    if (o->every_light || o->pass != RELUME_PASS_COLOUR || given(o, &o->develop.exposure) ||
+        relume_image_saves_linear(path) || ev == 0.0 || top >= dark)
+        return;
+    describe_low_light(low, o, info);
+    announce(&o->args, RELUME_NOTE,
+             "%s: nearly black, its bright parts are %.1f %% of white; --exposure auto adds %.1f "
+             "stops%s",
+             path, 100.0 * top, ev, low);
+}
+
 // Draws what the renderer's lights show, as the file `path` has it.
 static relume_status draw_picture(relume_renderer *renderer, const relume_objects *objects,
                                   const struct relight_options *o,
@@ -442,6 +491,8 @@ static relume_status draw_picture(relume_renderer *renderer, const relume_object
         status = tell_reflection(objects, pack, o, camera, &frame);
     if (!status && o->pass == GLARE_PASS)
         status = add_glare(&frame, renderer, o, camera);
+    if (!status)
+        note_darkness(&frame, o, relume_pack_info(pack), path);
     if (!status && o->pass == RELUME_PASS_NORMALS)
         show_normals(&frame, path);
     else if (!status)

@@ -14,7 +14,7 @@ static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_PICTURE, output, "OUT", "picture to write: .png, .jpg, .tif, ..."),
     GROUP("picture"),
-    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto: mid grey; default: auto",
+    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto, by the picture; default: auto",
                  "reinhard (default), filmic, gamma or linear (clip); .exr, .hdr and .pfm stay "
                  "linear"),
     {0},

@@ -1,4 +1,5 @@
 // cmd_capture.c - relume capture PHOTO ... -o DIR: a light sequence becomes a capture
+#include "cli/commands/film_frames.h"
 #include "cli/frame_options.h"
 
 #include <math.h>
@@ -18,12 +19,13 @@ struct capture_options {
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
     struct points ball;
     struct texts ball_photos, flat;
-    int balls;
+    int balls, frames;
     double ball_z, fov, focal, width;
     struct light_options lighting;
     int cpu_mask;
 };
 #define OPTIONS struct capture_options
+enum { FRAMES = 60 };  // of a film
 
 static relume_status take_crop(void *place, const struct option *o, const char *text,
                                const struct relume_log *log)
@@ -50,6 +52,8 @@ static const struct option options[] = {
     TEXT("--mask", mask, "FILE", "a mask: white where the object is"),
     OWN("--crop", crop, "x,y,w,h",
         "keep this part of the photographs, or auto: the object without ball and table", take_crop),
+    INT("--frames", frames, "N", "a film of a moving lamp: frames to keep; default: 60", 3,
+        FILM_FRAMES_MOST),
     FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),
     GROUP("finding the lights"),
     POINTS("--ball", ball, "x,y,r",
@@ -317,14 +321,34 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
              s->lights, directions, positions, left_out, next);
 }
 
+// The photographs that are named, or frames of a film.
+static relume_status make_capture(const struct capture_options *o,
+                                  struct relume_acquisition *report)
+{
+    const struct args *args = &o->args;
+    const struct relume_acquire_params params = read_options(o);
+    struct film_frames film;
+    if (args->inputs != 1 || !film_frames_named(args->input[0]))
+        return relume_capture_photographs(o->output, args->input, args->inputs, &params, report);
+    relume_status status =
+        film_frames_open(&film, args->input[0], o->frames ? o->frames : FRAMES, args->log);
+    if (status)
+        return status;
+    announce(args, RELUME_NOTE, "%s: %d of %d frames are taken, the sharp ones whose light differs",
+             args->input[0], film.count, film.frames);
+    status = relume_capture_photographs(o->output, (const char *const *)film.path, film.count,
+                                        &params, report);
+    film_frames_close(&film);
+    return status;
+}
+
 static relume_status run_capture(const struct args *args)
 {
     const struct capture_options *o = (const void *)args;
-    const struct relume_acquire_params params = read_options(o);
     struct relume_acquisition report = {0};
     relume_status status = check_options(o);
     if (!status)
-        status = relume_capture_photographs(o->output, args->input, args->inputs, &params, &report);
+        status = make_capture(o, &report);
     if (!status && o->encode)
         status = encode_as_usual(args, o->output, o->encode);
     if (!status && o->relight)

@@ -25,7 +25,7 @@ MAJOR := $(shell sed -n 's/^.define RELUME_VERSION "\([0-9]*\)\..*/\1/p' include
 .PHONY: all lib cli viewer samples deps deps-web deps-stitch deps-mpi deps-docs deps-python demo tour tutorials figures docs \
         install dist deb clean
 .DELETE_ON_ERROR:
-all: lib cli viewer $B/layers.ok
+all: lib cli viewer samples $B/layers.ok
 
 # ---------------------------------------------------------------- flags
 

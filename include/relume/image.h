@@ -70,6 +70,8 @@ struct relume_image_params {
     const struct relume_writer
         *writer;   // saving: write here; `path` is a name that says the format
     bool profile;  // saving .jpg and .tif: with an ICC profile of sRGB (PNG always says sRGB)
+    int bits;      // saving .png and .tif: 8 or 16 a sample; default 8
+    bool codes;    // saving integers: samples are values in [0, 1], not light to be sRGB-coded
 };
 #define relume_image_params(...)                                                                   \
     (&(const struct relume_image_params){RELUME_SIZED(relume_image_params), __VA_ARGS__})
@@ -79,7 +81,7 @@ struct relume_image_params {
 RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const char *path,
                                               const struct relume_image_params *params);
 // Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every
-// other sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well). A
+// other sRGB-coded and clipped to [0, 1], 8 bits unless `bits` says 16. A
 // device or pipe without an extension gets EXR. A fourth channel is alpha, in .png and .exr only.
 // The file appears under its name whole or not at all. Returns RELUME_EINVAL for an unknown
 // extension, RELUME_EIO.

@@ -6,7 +6,7 @@
 relume_status develop(struct relume_image *frame, const struct develop_options *o, const char *path)
 {
     const struct relume_tone_params tone = {
-        .exposure_ev = isnan(o->exposure) ? relume_tone_meter(frame) : o->exposure,
+        .exposure_ev = isnan(o->exposure) ? relume_tone_meter_for(frame, o->tone) : o->exposure,
         .tone = o->tone,
         .white = o->white,
     };
@@ -17,4 +17,19 @@ relume_status develop(struct relume_image *frame, const struct develop_options *
     for (size_t i = 0; i < samples; i++)
         frame->data[i] *= gain;
     return RELUME_OK;
+}
+
+relume_status check_bits(const struct develop_options *o, const char *path)
+{
+    if (o->bits == BITS_8 || has_words(path))
+        return RELUME_OK;
+    return usage_error("--bits 16: expected an output that ends in .png or .tif; found '%s'", path);
+}
+
+relume_status save_developed(const struct relume_image *frame, const struct develop_options *o,
+                             const char *path, const struct relume_log *log)
+{
+    return relume_image_save(frame, path,
+                             relume_image_params(.log = log, .profile = o->icc,
+                                                 .bits = o->bits == BITS_16 ? 16 : 8));
 }

@@ -210,7 +210,7 @@ static relume_status note_inputs(struct parsed *p)
         relume_context_note(p->log.context, p->line.input[i]);
     for (int i = 0; i < p->line.given_count; i++) {
         const enum option_kind kind = p->line.given[i].option->kind;
-        if (kind == OPTION_TEXT || kind == OPTION_TEXTS)
+        if (kind == OPTION_TEXT || kind == OPTION_TEXTS || kind == OPTION_FILES)
             relume_context_note(p->log.context, p->line.given[i].text);
     }
     for (int i = 0; !status && i < p->line.given_count; i++)

@@ -168,8 +168,8 @@ bad 'a photograph of the ball too many is named' 'more/chrome.12.png: there is n
     "$data/buddha" --ball-photos more
 rm more/chrome.12.png more/chrome.5.png
 bad 'one too few' 'buddha.5.png: there is no photograph of the ball with this number' "$data/buddha" --ball-photos more
-bad 'a * of the shell behind --ball-photos' "1 photograph of the ball, [0-9]+ of the object; .* the folder of the ball's photographs" \
-    "$data/buddha" --ball-photos chrome/*.png
+bad 'a * of the shell, no object before it' '1 photograph of the ball, [0-9]+ of the object; .* name those of the object first' \
+    --ball-photos chrome/*.png
 expect_ok 'a transfer of the ball alone' 'uneven light' "$RELUME" capture "$data/buddha" --ball-photos chrome -o curved \
     --ball-transfer gamma:2.2 -q
 differ 'moves what the ball tells' curved/lights.lp buddha/lights.lp

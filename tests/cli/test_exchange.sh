@@ -121,6 +121,14 @@ for kind in bilinear rbf bilinear:mycc rbf:mycc ptm lptm hsh sh ptm:ycc hsh:ycc 
     decoded_alike "folder $type: an independent decoder" web-$type web-$type.exr
     above "folder $type: as good as was promised" "$(psnr pca.exr web-$type.exr)" "$(awk -v p="$(promised)" 'BEGIN { print p - 5 }')"
 done
+# relight writes nan for a light that its list gives no direction; what else is in the folder is shown
+lights=$(sed -n 's/.*"lights": \[\([^,]*, [^,]*, [^,]*\),.*/\1/p' web-rbf/info.json)
+for kind in rbf ptm; do
+    cp -r web-$kind nan-$kind && sed -i "s/\"lights\": \[$lights/\"lights\": [-nan, -nan, nan/; s/\"width\"/\"size\": [nan, inf], &/" nan-$kind/info.json
+    expect_ok "nan in a folder, $kind" 'info.json: holds nan' "$RELUME" relight nan-$kind -o nan-$kind.png --light 'dir -0.5 -0.2 0.8'
+    relume relight web-$kind.exr -o number-$kind.png --light 'dir -0.5 -0.2 0.8'
+    above "nan in a folder, $kind: the picture" "$("$RELUME" compare nan-$kind.png number-$kind.png | awk '$1 == "psnr_db" { print $2 }')" 50
+done
 # the chroma b of this sphere is below zero on average, which the bytes of a folder's mean cannot be
 for space in rgb mycc; do
     "$RELUME" export pca.exr -o same --colorspace $space --bytes-per-pixel 4 --force 2>note.txt

@@ -4,7 +4,9 @@
 . "$(dirname "$0")/lib.sh"
 PATH=$BUILD:$BUILD/samples:$TOP/samples:$PATH
 unset MAKEFLAGS
-check 'the samples are built' make -s -C "$TOP" config=$config samples
+check 'make builds what the tutorials need' make -s -C "$TOP" config=$config all
+check 'their programs as well' sh -c \
+    'make -n -C "$1" config="$2" -W samples/mirrorball.c all | grep -q samples/mirrorball' - "$TOP" $config
 
 tutorial() { # name, files that must be there
     title=$1

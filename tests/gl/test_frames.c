@@ -630,7 +630,7 @@ static void the_meter_sees_a_small_frame(void **state)
     for (int i = 0; i < 2; i++) {
         app.now.exposure_ev = 3 * i;
         assert_int_equal(draw_app(&r, &app), RELUME_OK);
-        assert_int_equal(gl_renderer_meter(&ev[i], &r), RELUME_OK);
+        assert_int_equal(gl_renderer_meter(&ev[i], &r, &relume_tone_filmic), RELUME_OK);
     }
     assert_true(fabs(ev[0] - ev[1] - 3) < 0.1);
     struct relume_image frame;

@@ -3,6 +3,7 @@
 //   mkimage png  DEPTH CHANNELS DIR IN...  PNG of 8 or 16 bits; 1 grey, 2 + alpha, 3 RGB, 4 + alpha
 //   mkimage tiff DEPTH CHANNELS DIR IN...  TIFF of 8, 16 or 32 (float) bits; 1, 3 or 4 channels;
 //                                          both write DIR/NAME under each input's own name
+//   mkimage pages OUT IN...               TIFF of a page for each, 16 bits RGB
 //   mkimage poke IN OUT X Y VALUE          all channels of a pixel, float EXR ("nan", "inf", ...)
 //   mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR
 //   mkimage plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR
@@ -165,14 +166,14 @@ static void write_png(const char *from, const char *to, int depth, int channels)
 
 // ---------------------------------------------------------------- TIFF (uncompressed)
 
-static void write_tiff(const char *from, const char *to, int depth, int channels)
+// Appends a page and writes its place at `link`. Returns where the place of the next one belongs.
+static size_t put_page(struct buffer *file, size_t link, const char *from, int depth, int channels)
 {
     struct relume_image image = load(from);
+    const uint32_t base = (uint32_t)file->size;
     const uint32_t width = (uint32_t)image.width, height = (uint32_t)image.height;
     const uint32_t bytes = width * height * (uint32_t)(channels * depth / 8);
     struct buffer b = {0};
-    put(&b, "II*\0", 4);
-    put_little(&b, 8 + bytes + 8, 4);
     for (size_t p = 0; p < (size_t)width * height; p++)
         for (int c = 0; c < channels; c++)
             if (depth == 32)
@@ -184,10 +185,10 @@ static void write_tiff(const char *from, const char *to, int depth, int channels
     const uint32_t entries[][4] = {
         {256, 4, 1, width},
         {257, 4, 1, height},
-        {258, 3, (uint32_t)channels, channels > 2 ? 8 + bytes : (uint32_t)depth},
+        {258, 3, (uint32_t)channels, channels > 2 ? base + bytes : (uint32_t)depth},
         {259, 3, 1, 1},
         {262, 3, 1, channels < 3 ? 1 : 2},
-        {273, 4, 1, 8},
+        {273, 4, 1, base},
         {277, 3, 1, (uint32_t)channels},
         {278, 4, 1, height},
         {279, 4, 1, bytes},
@@ -206,8 +207,31 @@ static void write_tiff(const char *from, const char *to, int depth, int channels
         put_little(&b, entries[i][3], 4);
     }
     put_little(&b, 0, 4);
-    save(&b, to);
+    const uint32_t directory = base + bytes + 8;
+    for (int i = 0; i < 4; i++)
+        file->data[link + (size_t)i] = (uint8_t)(directory >> (8 * i));
+    put(file, b.data, b.size);
+    free(b.data);
     relume_image_destroy(&image);
+    return file->size - 4;
+}
+
+static void write_tiff(const char *from, const char *to, int depth, int channels)
+{
+    struct buffer b = {0};
+    put(&b, "II*\0\0\0\0\0", 8);
+    put_page(&b, 4, from, depth, channels);
+    save(&b, to);
+}
+
+static void write_pages(const char *to, int count, char **from)
+{
+    struct buffer b = {0};
+    size_t link = 4;
+    put(&b, "II*\0\0\0\0\0", 8);
+    for (int i = 0; i < count; i++)
+        link = put_page(&b, link, from[i], 16, 3);
+    save(&b, to);
 }
 
 // ---------------------------------------------------------------- headers that promise too much
@@ -453,6 +477,8 @@ int main(int argc, char **argv)
     const char *what = argc > 1 ? argv[1] : "";
     if ((!strcmp(what, "png") || !strcmp(what, "tiff")) && argc > 5)
         convert(what[0] == 'p' ? write_png : write_tiff, argc, argv);
+    else if (!strcmp(what, "pages") && argc > 3)
+        write_pages(argv[2], argc - 3, argv + 3);
     else if (!strcmp(what, "poke") && argc == 7)
         poke(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]), strtof(argv[6], NULL));
     else if (!strcmp(what, "gain") && argc == 5)

@@ -418,7 +418,7 @@ static void members_that_disagree(void **state)
         {{.white = {1, 1, 4, 4}, .target = "auto"}, "expected one of --white and --target"},
         {{.target_values = "values.txt"}, "--target-values needs --target FILE"},
         {{.target_corner = corner}, "--target-corners needs --target FILE"},
-        {{.width_mm = 20}, "--width needs --height FILE.exr"},
+        {{.width_mm = 20}, "--width needs --height FILE"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct relume_acquire_params params = cases[i].params;

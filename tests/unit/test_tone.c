@@ -94,6 +94,29 @@ static void fill(struct relume_image *image, int from, int to, double value)
 // Luminances are counted in steps of 1/16 EV.
 static const double step_ev = 1.0 / 16;
 
+static void bright_parts_come_to_nine_tenths(void **state)
+{
+    (void)state;
+    struct relume_image image;
+    CHECK_OK(relume_image_create(&image, 50, 20, 3));
+    assert_true(relume_tone_meter_bright(&image) == 0);
+    for (int ev = -10; ev <= 10; ev++) {
+        fill(&image, 0, 1000, 0.9 * exp2(ev));
+        CHECK_NEAR(relume_tone_meter_bright(&image), -ev, step_ev);
+    }
+    fill(&image, 0, 1000, 0);
+    fill(&image, 0, 200, 0.225);  // the rest is black and does not count
+    CHECK_NEAR(relume_tone_meter_bright(&image), 2, step_ev);
+    fill(&image, 0, 1, 50);  // a glint
+    CHECK_NEAR(relume_tone_meter_bright(&image), 2, step_ev);
+    image.data[0] = image.data[1] = 0;  // the largest channel counts
+    image.data[2] = 0.225f;
+    CHECK_NEAR(relume_tone_meter_bright(&image), 2, step_ev);
+    assert_true(relume_tone_meter_for(&image, NULL) == relume_tone_meter_bright(&image));
+    assert_true(relume_tone_meter_for(&image, &relume_tone_filmic) == relume_tone_meter(&image));
+    relume_image_destroy(&image);
+}
+
 static void mid_grey_needs_no_exposure(void **state)
 {
     (void)state;
@@ -176,6 +199,7 @@ int main(void)
         cmocka_unit_test(greys_keep_their_order),
         cmocka_unit_test(known_values),
         cmocka_unit_test(images_are_exposed_first),
+        cmocka_unit_test(bright_parts_come_to_nine_tenths),
         cmocka_unit_test(mid_grey_needs_no_exposure),
         cmocka_unit_test(a_sun_and_a_black_room_do_not_matter),
         cmocka_unit_test(the_meter_is_a_trimmed_log_average),

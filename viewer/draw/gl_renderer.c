@@ -269,7 +269,8 @@ relume_status gl_renderer_read(struct relume_image *out, const struct gl_rendere
     return target_read(out, r->shown, r->gl);
 }
 
-relume_status gl_renderer_meter(double *ev, struct gl_renderer *r)
+relume_status gl_renderer_meter(double *ev, struct gl_renderer *r,
+                                const struct relume_tone *tone)
 {
     enum { SIDE = 128 };
     const int width = r->frame.width < SIDE ? r->frame.width : SIDE;
@@ -285,7 +286,7 @@ relume_status gl_renderer_meter(double *ev, struct gl_renderer *r)
     draw_picture(&r->programs.picture, r->gl, &area, &r->frame);
     status = target_read(&image, &r->small, r->gl);
     if (!status)
-        *ev = relume_tone_meter(&image);
+        *ev = relume_tone_meter_for(&image, tone);
     relume_image_destroy(&image);
     return status;
 }

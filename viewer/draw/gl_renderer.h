@@ -4,6 +4,8 @@
 
 #include "draw/gl_renderer_state.h"
 
+#include <relume/relight/tone.h>
+
 // `uv` [views] places the cameras of a slab; NULL: there is none, or gl_renderer_use_slabs places
 // them. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EUNFIT.
 relume_status gl_renderer_create(struct gl_renderer *renderer, const struct gl *gl,
@@ -64,8 +66,9 @@ bool gl_renderer_is_pending(const struct gl_renderer *renderer);
 relume_status gl_renderer_draw(struct gl_renderer *renderer, const struct frame_request *request);
 // The last frame as an image, linear; the caller destroys it.
 relume_status gl_renderer_read(struct relume_image *out, const struct gl_renderer *renderer);
-// What relume_tone_meter says of the last frame, seen through a small copy of it.
-relume_status gl_renderer_meter(double *ev, struct gl_renderer *renderer);
+// What relume_tone_meter_for says of the last frame, seen through a small copy of it.
+relume_status gl_renderer_meter(double *ev, struct gl_renderer *renderer,
+                                const struct relume_tone *tone);
 // The last frame by relume_tones[tone] onto a framebuffer of its size, coded for the screen (0: the
 // screen).
 void gl_renderer_present(const struct gl_renderer *renderer, const struct window_place *window,

@@ -71,9 +71,16 @@ struct relume_acquire_params {
     bool no_registration;  // leave photographs as they are where the camera was moved; default:
                            // shifts of half a pixel and more are found and taken out
 
+    // The part of the photographs that the capture holds, once the lights are known: x, y, width,
+    // height in pixels; width 0: all. The window keeps its place in the world, so that near lights,
+    // masks and scales stay right.
+    int crop[4];
+    bool crop_auto;  // the object, by its relief, without balls and table; all where it fills them
+
     // By-products: pictures that are written beside the capture. Default: none.
     const char *normals, *albedo, *height;
-    double width_mm;  // of the picture: `height` in millimetres; default: world units
+    double width_mm;  // of the photographs, not cropped: `height` in millimetres; default: world
+                      // units
     bool surface;     // the report's `photometric` at full size, as it is fitted for by-products;
                       // default: of at most 168 pixels a side, to see whether photographs fit
 };
@@ -99,6 +106,8 @@ enum { RELUME_ACQUIRE_SUGGESTIONS = 12 };
 // Report of a capture that was made. Thread-safety: plain data.
 struct relume_acquisition {
     int width, height, lights;
+    int crop[4];  // x, y, width, height of the part that was kept; width 0: all. Balls and shifts
+                  // are in pixels of the whole photographs
     struct relume_acquired_photo *photo;  // [lights]: those that were used
     struct relume_vec3 *direction;        // [lights], unit
     struct relume_vec3 *position;         // [lights], world units, or NULL

@@ -120,7 +120,15 @@ static relume_status fill_result(struct acquisition *s)
 
 static struct relume_geometry geometry_of(const struct acquisition *s)
 {
-    struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->width, s->height);
+    struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->whole[0], s->whole[1]);
+    const int *crop = s->out->crop;
+    const double pixel = (g.window_max[0] - g.window_min[0]) / s->whole[0];
+    if (crop[2]) {
+        g.window_min[0] += pixel * crop[0];
+        g.window_max[0] = g.window_min[0] + pixel * crop[2];
+        g.window_max[1] -= pixel * crop[1];
+        g.window_min[1] = g.window_max[1] - pixel * crop[3];
+    }
     g.perspective = s->p.fov_deg > 0.0;
     if (g.perspective)
         g.camera_z = 1.0 / tan(s->p.fov_deg * M_PI / 360.0);
@@ -205,9 +213,11 @@ static relume_status copy_mask(const struct acquisition *s, const char *path)
     relume_status status = relume_image_load(
         &mask, s->p.mask,
         relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
-    if (!status && (mask.width != s->width || mask.height != s->height))
+    if (!status && (mask.width != s->whole[0] || mask.height != s->whole[1]))
         status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
-                          s->p.mask, mask.width, mask.height, s->width, s->height);
+                          s->p.mask, mask.width, mask.height, s->whole[0], s->whole[1]);
+    if (!status && s->out->crop[2])
+        status = acquire_crop_image(&mask, s->out->crop);
     if (!status)
         status = relume_image_save(&mask, path, relume_image_params(.log = s->p.log, .half = true));
     relume_image_destroy(&mask);
@@ -349,6 +359,8 @@ relume_status acquire_look(struct acquisition *s)
     if (!status)
         status = acquire_whiten(s);
     if (!status)
+        status = acquire_crop(s);
+    if (!status)
         status = fill_result(s);
     return status ? status : acquire_check_lights(s);
 }
@@ -413,9 +425,8 @@ static relume_status check_balls(const struct acquisition *s)
     const char *what = more ? "photograph of the object" : "photograph of the ball";
     if (balls == 1)
         return log_fail(s->p.log, RELUME_EUNFIT,
-                        "1 photograph of the ball, %d of the object; expected one for each; give "
-                        "the folder of the ball's photographs, not its files (a shell's * leaves "
-                        "all but the first to the object)",
+                        "1 photograph of the ball, %d of the object; expected one for each; name "
+                        "those of the object first, then --ball-photos and those of the ball",
                         objects);
     if (odd)
         return log_fail(s->p.log, RELUME_EUNFIT,
@@ -432,6 +443,8 @@ static relume_status check_balls(const struct acquisition *s)
 // Returns a sentence about members that need or exclude each other, NULL where all agree.
 static const char *find_conflict(const struct relume_acquire_params *p)
 {
+    if (p->crop_auto && (p->crop[2] || p->crop[3]))
+        return "expected one of --crop x,y,w,h and --crop auto";
     if (p->fov_deg > 0.0 && p->focal_mm > 0.0)
         return "expected one of --fov and --focal";
     if (p->refine_brightness && p->refine_lights)
@@ -451,7 +464,7 @@ static const char *find_conflict(const struct relume_acquire_params *p)
     if (p->target_corner && !p->target)
         return "--target-corners needs --target FILE";
     if (p->width_mm > 0.0 && !p->height)
-        return "--width needs --height FILE.exr";
+        return "--width needs --height FILE";
     return NULL;
 }
 

@@ -75,7 +75,8 @@ struct acquisition {
     size_t left_bytes;                            // of opening->keep_bytes
     int shots;
     struct shot *shot;
-    int width, height;  // of the photographs
+    int width, height;  // of the photographs, cropped once the lights are known
+    int whole[2];       // before that
     int orientation;    // of the first, which all have: the camera stands still; 0: none yet
     bool again;         // photographs are read a second time, since some were moved
     struct relume_image first;  // that others are aligned to; empty unless params.align
@@ -160,6 +161,13 @@ relume_status acquire_register(struct acquisition *s, bool *moved);
 int acquire_luma_side(int shots);
 // Moves a picture back by a shift; its border is repeated. RELUME_ENOMEM.
 relume_status acquire_move_back(struct relume_image *image, const double shift[2]);
+// Makes a small photograph, of at most SHOT_SMALL pixels a side. RELUME_ENOMEM.
+relume_status acquire_shrink(struct relume_image *out, const struct relume_image *from);
+// Crops the photographs in the folder, and the small ones, as params.crop says. RELUME_EINVAL,
+// RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status acquire_crop(struct acquisition *s);
+// Cuts a picture to x, y, width, height, which lie inside. RELUME_ENOMEM.
+relume_status acquire_crop_image(struct relume_image *image, const int crop[4]);
 // How sharp a photograph is by itself.
 void acquire_measure_detail(struct shot *shot, const struct relume_image *image);
 // Check sums of the photographs' files. An input status, RELUME_ENOMEM.

@@ -6,6 +6,7 @@
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/tree.h"
+#include "image/image/pages.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,10 +52,34 @@ static relume_status list(struct relume_photographs *out, const char *const *pat
                                   .command = least ? "try: relume capture" : NULL));
 }
 
+// A TIFF of several pages that is named alone holds a photograph on each.
+static relume_status list_pages(struct relume_photographs *list, const struct relume_log *log)
+{
+    const int pages = list->count == 1 ? picture_pages(list->path[0], log) : 1;
+    if (pages == 1)
+        return RELUME_OK;
+    char *file = list->path[0];
+    char **path = mem_zeroed((size_t)pages, sizeof *path);
+    if (!path)
+        return RELUME_ENOMEM;
+    mem_free(list->path);
+    *list = (struct relume_photographs){
+        .path = path, .count = pages, .mask = list->mask, .lights = list->lights};
+    bool good = true;
+    for (int i = 0; i < pages; i++) {
+        path[i] = mem_format("%s#%d", file, i + 1);
+        good &= path[i] != NULL;
+    }
+    mem_free(file);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
 static relume_status list_sorted(struct relume_photographs *out, const char *const *paths, int n,
                                  const struct relume_log *log)
 {
-    const relume_status status = list(out, paths, n, 0, log);
+    relume_status status = list(out, paths, n, 0, log);
+    if (!status)
+        status = list_pages(out, log);
     return status ? status : sort_photographs(out, NULL);
 }
 
@@ -73,7 +98,9 @@ static bool are_sorted(const struct relume_photographs *list,
 static relume_status list_object(struct acquisition *s, const char *const *paths, int n)
 {
     struct relume_photographs *photos = &s->photographs;
-    const relume_status status = list(photos, paths, n, 3, s->p.log);
+    relume_status status = list(photos, paths, n, 3, s->p.log);
+    if (!status)
+        status = list_pages(photos, s->p.log);
     if (status)
         return status;
     s->named_singly = n > 1;

@@ -33,6 +33,11 @@ static relume_status shrink(struct relume_image *out, const struct relume_image 
     return RELUME_OK;
 }
 
+relume_status acquire_shrink(struct relume_image *out, const struct relume_image *from)
+{
+    return shrink(out, from, SHOT_SMALL);
+}
+
 // Counts the pixels at both ends of the code values, and those whose colour sRGB does not hold.
 static relume_status count_ends(struct shot *shot, const struct relume_image *image)
 {
@@ -231,7 +236,7 @@ static relume_status take_photograph(struct acquisition *s, int i, struct relume
     if (!status)
         status = align(s, i, image);
     if (!status)
-        status = shrink(&shot->small, image, SHOT_SMALL);
+        status = acquire_shrink(&shot->small, image);
     if (!status && !shot->ball_path && !s->p.lights)
         status = add_to_mean(s, image);
     return status ? status : save(s, shot, image);

@@ -9,6 +9,7 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/base/tree.h"
+#include "image/image/pages.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -22,6 +23,14 @@ struct summing {
     int *failed;  // [shots]: errno
 };
 
+// Returns true for a page of the file whose page precedes it.
+static bool is_next_page(const struct acquisition *s, int i)
+{
+    char file[PAGE_PATH], before[PAGE_PATH];
+    return i > 0 && page_of(file, s->shot[i].path) && page_of(before, s->shot[i - 1].path) &&
+           !strcmp(file, before);
+}
+
 static void sum_file(void *context, size_t item, int worker)
 {
     struct summing *c = context;
@@ -30,9 +39,15 @@ static void sum_file(void *context, size_t item, int worker)
     struct sha256 sha;
     struct infile in;
     uint8_t *bytes = mem_array(CHUNK, 1);
+    char file[PAGE_PATH];
+    (void)page_of(file, shot->path);
     (void)worker;
     sha256_init(&sha);
-    if (!infile_open(&in, shot->path, NULL, c->s->p.log) || !bytes)
+    if (is_next_page(c->s, (int)item)) {
+        mem_free(bytes);
+        return;
+    }
+    if (!infile_open(&in, file, NULL, c->s->p.log) || !bytes)
         *failed = bytes ? errno ? errno : EIO : ENOMEM;
     ssize_t n = 1;
     shot->bytes = 0;
@@ -111,9 +126,26 @@ char *acquire_provenance(const struct acquisition *s)
     for (int i = 0; i < s->shots; i++)
         put_photograph(&w, &s->shot[i]);
     jclose(&w);
+    if (s->out->crop[2]) {
+        jopen_array(&w, "crop");  // of the photographs as they are upright
+        for (int i = 0; i < 4; i++)
+            jput_integer(&w, NULL, s->out->crop[i]);
+        jclose(&w);
+    }
     if (s->out->target)
         put_chart(&w, s);
     return jtake(&w, NULL);
+}
+
+// Warns where photograph `i` is an earlier one under another name.
+static relume_status name_twin(struct acquisition *s, int i)
+{
+    for (int k = 0; k < i; k++)
+        if (!strcmp(s->shot[k].sha256, s->shot[i].sha256))
+            return acquire_warn(s, "%s and %s are the same photograph, byte for byte; one of the "
+                                   "two lights has a wrong picture",
+                                s->shot[k].path, s->shot[i].path);
+    return RELUME_OK;
 }
 
 relume_status acquire_sum_files(struct acquisition *s)
@@ -126,6 +158,13 @@ relume_status acquire_sum_files(struct acquisition *s)
     for (int i = 0; !status && i < s->shots; i++)
         if (c.failed[i])
             status = relume_input_fail(s->p.log, s->shot[i].path, "cannot be read", c.failed[i]);
+    for (int i = 1; !status && i < s->shots; i++)
+        if (is_next_page(s, i)) {
+            memcpy(s->shot[i].sha256, s->shot[i - 1].sha256, sizeof s->shot[i].sha256);
+            s->shot[i].bytes = s->shot[i - 1].bytes;
+        } else {
+            status = name_twin(s, i);
+        }
     mem_free(c.failed);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/tree.h"
+#include "image/image/photograph.h"
 #include "image/geometry/geometry.h"
 #include "image/image/picture_kind.h"
 
@@ -33,6 +34,9 @@ static relume_status project_description(char **out, const char *folder,
     *out = tree_only_below(folder, ".lp");
     if (*out)
         return RELUME_OK;
+    const relume_status status = photographs_refuse_tiles(folder, log);
+    if (status)
+        return status;
     return log_fail(log, RELUME_EFORMAT,
                     "%s: no capture.json and no single .lp file in this folder; give the .lp file, "
                     "or make a capture of photographs first: relume capture %s%s%s -o DIR",

@@ -1,24 +1,46 @@
 // cmd_capture.c - relume capture PHOTO ... -o DIR: a light sequence becomes a capture
+#include "cli/commands/film_frames.h"
 #include "cli/frame_options.h"
 
 #include <math.h>
+#include <string.h>
 
 struct capture_options {
     struct args args;
     const char *output, *mask, *ball_mask, *lights, *normals, *albedo, *height, *encode, *relight;
     struct relume_transfer transfer, ball_transfer;
     double white[4], target_corners[8];
+    struct crop {
+        bool automatic;
+        int part[4];
+    } crop;
     const char *target, *target_values;
     enum { ALIGN_AUTO, ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
     struct points ball;
     struct texts ball_photos, flat;
-    int balls;
+    int balls, frames;
     double ball_z, fov, focal, width;
     struct light_options lighting;
     int cpu_mask;
 };
 #define OPTIONS struct capture_options
+enum { FRAMES = 60 };  // of a film
+
+static relume_status take_crop(void *place, const struct option *o, const char *text,
+                               const struct relume_log *log)
+{
+    struct crop crop = {.automatic = !strcmp(text, "auto")};
+    int end = -1;
+    const int n = sscanf(text, "%d,%d,%d,%d%n", &crop.part[0], &crop.part[1], &crop.part[2],
+                         &crop.part[3], &end);
+    const bool good = n == 4 && end == (int)strlen(text) && crop.part[2] > 0 && crop.part[3] > 0;
+    memcpy(place, &crop, sizeof crop);
+    return crop.automatic || good
+               ? RELUME_OK
+               : say(log, RELUME_EINVAL,
+                     "%s: expected auto, or four whole numbers x,y,w,h; found '%s'", o->name, text);
+}
 
 static const struct option options[] = {
     GROUP("output"),
@@ -28,13 +50,17 @@ static const struct option options[] = {
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; default: by file"),
     TEXT("--mask", mask, "FILE", "a mask: white where the object is"),
+    OWN("--crop", crop, "x,y,w,h",
+        "keep this part of the photographs, or auto: the object without ball and table", take_crop),
+    INT("--frames", frames, "N", "a film of a moving lamp: frames to keep; default: 60", 3,
+        FILM_FRAMES_MOST),
     FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),
     GROUP("finding the lights"),
     POINTS("--ball", ball, "x,y,r",
            "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
     INT("--balls", balls, "N", "number of balls to look for; default: 1", 1, 16),
-    TEXTS("--ball-photos", ball_photos, "PATH",
-          "separate photographs of the ball: a folder, or one file (repeat the option for more)"),
+    FILES("--ball-photos", ball_photos, "PATH...",
+          "separate photographs of the ball: a folder, or files up to the next option"),
     TRANSFER("--ball-transfer", ball_transfer,
              "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file"),
     TEXT("--ball-mask", ball_mask, "FILE", "a mask: white where the ball is"),
@@ -65,8 +91,8 @@ static const struct option options[] = {
             "outer corners of the target's four corner patches, pixels; default: found", 8),
     TEXT("--target-values", target_values, "FILE",
          "24 lines L* a* b* (D50) of your own target; default: the published ones"),
-    TEXTS(
-        "--flat", flat, "PATH",
+    FILES(
+        "--flat", flat, "PATH...",
         "photograph of an even white surface: removes uneven light; one, or one under each light"),
     FLAG("--radial", radial,
          "--flat: use only how it falls off from the middle, as a smooth curve"),
@@ -74,11 +100,11 @@ static const struct option options[] = {
          "auto (find where the camera was moved), none or homography; default: auto", ALIGN_AUTO,
          "auto", "none", "homography"),
     GROUP("surface"),
-    TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE.exr", "write surface normals"),
+    TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE", "write surface normals: .exr, or .png or .tif of 16 bits"),
     TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),
-    TEXT_AS(OPTION_FLOATS, "--height", height, "FILE.exr",
-            "write the surface's height, in --width's millimetres; default: world units"),
-    NUMBER("--width", width, "MM", "width of the picture in millimetres: --height in millimetres",
+    TEXT_AS(OPTION_FLOATS, "--height", height, "FILE",
+            "write the surface's height, as --normals; in --width's millimetres, or world units"),
+    NUMBER("--width", width, "MM", "width of the photographs in millimetres: --height in millimetres",
            1e-6, 1e9),
     TEXT_AS(OPTION_RELUME, "--encode", encode, "FILE.exr",
             "also encode the capture to this relume file"),
@@ -139,6 +165,9 @@ static struct relume_acquire_params read_options(const struct capture_options *o
         .height = o->height,
         .width_mm = o->width,
     };
+    p.crop_auto = o->crop.automatic;
+    for (int i = 0; i < 4 && !o->crop.automatic; i++)
+        p.crop[i] = o->crop.part[i];
     for (int i = 0; i < 4; i++)
         p.white[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
     return p;
@@ -252,6 +281,12 @@ static void print_json(const struct relume_acquisition *s)
     jput_integer(&w, "left_out", s->left_out);
     jput_integer(&w, "width", s->width);
     jput_integer(&w, "height", s->height);
+    if (s->crop[2]) {
+        jopen_array(&w, "crop");
+        for (int i = 0; i < 4; i++)
+            jput_integer(&w, NULL, s->crop[i]);
+        jclose(&w);
+    }
     put_balls(&w, s);
     jput_number(&w, "gap_deg", s->gap_deg, 6);
     jput_number(&w, "residual", measured ? s->photometric.residual : (double)NAN, 9);
@@ -286,14 +321,34 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
              s->lights, directions, positions, left_out, next);
 }
 
+// The photographs that are named, or frames of a film.
+static relume_status make_capture(const struct capture_options *o,
+                                  struct relume_acquisition *report)
+{
+    const struct args *args = &o->args;
+    const struct relume_acquire_params params = read_options(o);
+    struct film_frames film;
+    if (args->inputs != 1 || !film_frames_named(args->input[0]))
+        return relume_capture_photographs(o->output, args->input, args->inputs, &params, report);
+    relume_status status =
+        film_frames_open(&film, args->input[0], o->frames ? o->frames : FRAMES, args->log);
+    if (status)
+        return status;
+    announce(args, RELUME_NOTE, "%s: %d of %d frames are taken, the sharp ones whose light differs",
+             args->input[0], film.count, film.frames);
+    status = relume_capture_photographs(o->output, (const char *const *)film.path, film.count,
+                                        &params, report);
+    film_frames_close(&film);
+    return status;
+}
+
 static relume_status run_capture(const struct args *args)
 {
     const struct capture_options *o = (const void *)args;
-    const struct relume_acquire_params params = read_options(o);
     struct relume_acquisition report = {0};
     relume_status status = check_options(o);
     if (!status)
-        status = relume_capture_photographs(o->output, args->input, args->inputs, &params, &report);
+        status = make_capture(o, &report);
     if (!status && o->encode)
         status = encode_as_usual(args, o->output, o->encode);
     if (!status && o->relight)

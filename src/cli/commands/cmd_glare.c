@@ -133,8 +133,7 @@ static relume_status save_one(struct viewer_eye *e, const struct relume_image *f
     if (!status)
         status = develop(&out, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(
-            &out, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
+        status = save_developed(&out, &o->develop, o->output, o->args.log);
     relume_image_destroy(&out);
     return status;
 }
@@ -200,13 +199,15 @@ static relume_status check(const struct glare_options *o)
         return usage_error("glare: --fps and --cycle need --frames N");
     if (out && !many && strchr(out, '%') && film_is(out))
         return usage_error("glare: expected --frames N for '%s'", out);
-    if (many && o->develop.icc)
-        return usage_error("--icc is of single pictures; expected without --frames");
+    if (many && (o->develop.icc || o->develop.bits))
+        return usage_error("--icc and --bits are of single pictures; expected without --frames");
     if (given(o, &o->width) && given(o, &o->field))
         return usage_error("glare: expected one of --field, --width");
     relume_status status = RELUME_OK;
     if (out && (!many || strchr(out, '%')))
         status = picture_name(o->args.log, "-o", out);
+    if (!status && out)
+        status = check_bits(&o->develop, out);
     if (!status && psf && *name_ending(psf))
         status = picture_name(o->args.log, "--psf", psf);
     return status;

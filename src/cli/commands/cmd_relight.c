@@ -23,12 +23,14 @@ struct relight_options {
     unsigned pass;
     const struct relume_transport *transport;  // NULL: none
     int bounces, spacing, cameras;
-    bool nearest, alpha, allow_outside, keep_going;
+    bool nearest, alpha, allow_outside, keep_going, every_light, force;
+    int format;  // of the pictures of every light: a place in `formats`
     struct light_options lighting;
     struct develop_options develop;
     struct eye_options glare;
 };
 #define OPTIONS struct relight_options
+static const char *const formats[] = {"png", "jpg", "tif", "exr"};
 enum { ACROSS = 3, MOST_ACROSS = 16 };  // rays along each side of a pixel
 
 static relume_status take_transport(void *place, const struct option *o, const char *text,
@@ -46,8 +48,12 @@ static relume_status take_transport(void *place, const struct option *o, const c
 
 static const struct option options[] = {
     GROUP("output"),
-    OUTPUT(OPTION_PICTURE, output, "OUT",
+    OUTPUT(OPTION_OUTPUT, output, "OUT",
            "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ..."),
+    FLAG("--every-light", every_light, "-o FOLDER: one picture for each captured light"),
+    NAME("--format", format, "F", "--every-light: png, jpg, tif or exr; default: png", 0, "png",
+         "jpg", "tif", "exr"),
+    FLAG("--force", force, "--every-light: replace a folder that relume made"),
     TEXT_AS(OPTION_STATE, "--state", state, "LINE",
             "show it as a page or the viewer did when this line or link was copied there; options "
             "beside it count before it"),
@@ -424,6 +430,123 @@ static relume_status place_eye(struct relume_camera *camera, relume_pack *pack,
     return status;
 }
 
+static double elevation(struct relume_vec3 d)
+{
+    return atan2(d.z, hypot(d.x, d.y)) * 180.0 / M_PI;
+}
+
+// Says how far below the lowest captured light that of a raking picture stands; "": it does not.
+static void describe_low_light(char text[160], const struct relight_options *o,
+                               const struct relume_pack_info *info)
+{
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
+    const struct relume_light *light;
+    relume_rig *rig = NULL;
+    double low = 90.0, lowest = 90.0;
+    int n = 0;
+    *text = '\0';
+    if (info->geometry.projection != RELUME_PLANAR ||
+        parse_lights(&o->args, &o->lighting, &rig, &light, &n))
+        return;
+    for (int i = 0; i < n; i++)
+        if (light[i].kind == RELUME_LIGHT_DIRECTIONAL)
+            low = fmin(low, elevation(light[i].direction));
+    for (int i = 0; i < coder->lights; i++)
+        lowest = fmin(lowest, elevation(coder->directions[i]));
+    if (low < lowest)
+        snprintf(text, 160,
+                 "; the light stands %.0f degrees above the picture, the lowest photographed one "
+                 "%.0f",
+                 low, lowest);
+    relume_rig_destroy(&rig);
+}
+
+// Raking light leaves some surfaces nearly black.
+static void note_darkness(const struct relume_image *frame, const struct relight_options *o,
+                          const struct relume_pack_info *info, const char *path)
+{
+    static const double bright = 0.9, dark = 0.1;  // relume_tone_meter_bright; of white
+    char low[160];
+    const double ev = relume_tone_meter_bright(frame);
+    const double top = bright * exp2(-ev);
+    if (o->every_light || o->pass != RELUME_PASS_COLOUR || given(o, &o->develop.exposure) ||
+        relume_image_saves_linear(path) || ev == 0.0 || top >= dark)
+        return;
+    describe_low_light(low, o, info);
+    announce(&o->args, RELUME_NOTE,
+             "%s: nearly black, its bright parts are %.1f %% of white; --exposure auto adds %.1f "
+             "stops%s",
+             path, 100.0 * top, ev, low);
+}
+
+// Draws what the renderer's lights show, as the file `path` has it.
+static relume_status draw_picture(relume_renderer *renderer, const relume_objects *objects,
+                                  const struct relight_options *o,
+                                  const struct relume_camera *camera, const char *path)
+{
+    relume_pack *pack = relume_renderer_pack(renderer);
+    struct relume_image frame = {0};
+    relume_status status = draw(&frame, renderer, o, camera);
+    if (!status)
+        status = tell_reflection(objects, pack, o, camera, &frame);
+    if (!status && o->pass == GLARE_PASS)
+        status = add_glare(&frame, renderer, o, camera);
+    if (!status)
+        note_darkness(&frame, o, relume_pack_info(pack), path);
+    if (!status && o->pass == RELUME_PASS_NORMALS)
+        show_normals(&frame, path);
+    else if (!status)
+        status = develop(&frame, &o->develop, path);
+    if (!status && o->alpha)
+        status = add_alpha(&frame, pack, camera);
+    if (!status)
+        status = save_developed(&frame, &o->develop, path, o->args.log);
+    relume_image_destroy(&frame);
+    return status;
+}
+
+static relume_status draw_light(relume_renderer *renderer, const relume_objects *objects,
+                                const struct relight_options *o,
+                                const struct relume_camera *camera, const char *folder, int i)
+{
+    const relume_coder *coder = relume_pack_info(relume_renderer_pack(renderer))->coder;
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const struct relume_light light = {
+        .kind = RELUME_LIGHT_DIRECTIONAL, .direction = info->directions[i], .rgb = {1, 1, 1}};
+    char path[4200];
+    snprintf(path, sizeof path, "%.4096s/light%04d.%s", folder, i, formats[o->format]);
+    relume_status status = relume_renderer_set_lights(renderer, &light, 1);
+    if (!status)
+        status = draw_picture(renderer, objects, o, camera, path);
+    if (!status && o->args.log->progress &&
+        !o->args.log->progress(o->args.log->user, "relighting", (i + 1.0) / info->lights))
+        status = RELUME_ECANCEL;
+    return status;
+}
+
+// A picture under each captured light, in the folder that is the output.
+static relume_status draw_every_light(relume_renderer *renderer, const relume_objects *objects,
+                                      const struct relight_options *o,
+                                      const struct relume_camera *camera)
+{
+    const relume_coder *coder = relume_pack_info(relume_renderer_pack(renderer))->coder;
+    const int lights = relume_coder_info(coder)->lights;
+    relume_making *folder;
+    relume_status status =
+        relume_making_open(&folder, o->output, RELUME_MADE_FOLDER, o->force, o->args.log);
+    if (status)
+        return status;
+    for (int i = 0; !status && i < lights; i++)
+        status = draw_light(renderer, objects, o, camera, relume_making_path(folder), i);
+    if (status) {
+        relume_making_abort(&folder);
+        return status;
+    }
+    announce(&o->args, RELUME_NOTE, "%s: %d pictures, one for each captured light", o->output,
+             lights);
+    return relume_making_commit(&folder);
+}
+
 static relume_status render(const struct relight_options *o, struct relume_camera *camera,
                             struct relume_frame_params params, const struct relume_light *lights,
                             int count)
@@ -433,7 +556,6 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     relume_objects *objects = NULL;
     relume_capture *capture = NULL;
     struct prefix_log about;
-    struct relume_image frame = {0};
     const bool lens = given(o, &o->aperture) || given(o, &o->focus);
     relume_status status = relume_open(
         &pack, o->args.input[0],
@@ -445,7 +567,7 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool free_eye = info->slabs || relume_look_at_given(&camera->look_at);
     const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
-    params.once = true;
+    params.once = !o->every_light;
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
     params.focus = given(o, &o->focus) ? o->focus - plane_z : 0.0;
     if (!free_eye && lens)
@@ -465,21 +587,8 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     if (!status)
         status = set_objects(&objects, renderer, o);
     if (!status)
-        status = draw(&frame, renderer, o, camera);
-    if (!status)
-        status = tell_reflection(objects, pack, o, camera, &frame);
-    if (!status && o->pass == GLARE_PASS)
-        status = add_glare(&frame, renderer, o, camera);
-    if (!status && o->pass == RELUME_PASS_NORMALS)
-        show_normals(&frame, o->output);
-    else if (!status)
-        status = develop(&frame, &o->develop, o->output);
-    if (!status && o->alpha)
-        status = add_alpha(&frame, pack, camera);
-    if (!status)
-        status = relume_image_save(
-            &frame, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
-    relume_image_destroy(&frame);
+        status = o->every_light ? draw_every_light(renderer, objects, o, camera)
+                                : draw_picture(renderer, objects, o, camera, o->output);
     relume_renderer_destroy(&renderer);
     relume_objects_destroy(&objects);
     relume_capture_destroy(&capture);
@@ -511,6 +620,7 @@ static relume_status check_scene(const struct relight_options *o)
         {"--alpha", &o->alpha},
         {"--interpolate", &o->interpolation},
         {"--nearest", &o->nearest},
+        {"--every-light", &o->every_light},
         {"--filter", &o->filter},
         {"--capture", &o->capture},
         {"--assume-depth", &o->lighting.assume_depth},
@@ -557,8 +667,7 @@ static relume_status draw_scene(const struct relight_options *o, const struct re
     if (!status)
         status = develop(&frame, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(
-            &frame, o->output, relume_image_params(.log = o->args.log, .profile = o->develop.icc));
+        status = save_developed(&frame, &o->develop, o->output, o->args.log);
     relume_image_destroy(&frame);
     relume_tableau_destroy(&tableau);
     return status;
@@ -582,6 +691,25 @@ static relume_status run_scene(const struct relight_options *o)
 
 // ---------------------------------------------------------------- the command
 
+// A picture, or with --every-light a folder of them.
+static relume_status check_output(const struct relight_options *o)
+{
+    char picture[16];
+    snprintf(picture, sizeof picture, "a.%s", formats[o->format]);
+    if (!o->every_light && (given(o, &o->format) || o->force))
+        return usage_error("--format and --force work only with --every-light");
+    if (o->every_light && (o->lighting.light.count || o->lighting.rig || o->lighting.save_rig ||
+                           given(o, o->reflection_at)))
+        return usage_error("--every-light: leave out --light, --rig, --save-rig and "
+                           "--reflection-at");
+    if (o->every_light && o->alpha && !relume_image_saves_alpha(picture))
+        return usage_error("--alpha: expected --format png or exr");
+    if (o->every_light)
+        return check_bits(&o->develop, picture);
+    const relume_status status = picture_name(o->args.log, "-o", o->output);
+    return status ? status : check_bits(&o->develop, o->output);
+}
+
 static relume_status run_relight(const struct args *args)
 {
     const struct relight_options *o = (const void *)args;
@@ -598,19 +726,22 @@ static relume_status run_relight(const struct args *args)
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;
-    if (relume_kind_of(args->input[0]) == RELUME_KIND_SCENE)
-        return run_scene(o);
-    if (o->alpha && !relume_image_saves_alpha(o->output))
+    relume_status status = check_output(o);
+    if (status)
+        return status;
+    if (o->alpha && !o->every_light && !relume_image_saves_alpha(o->output))
         return usage_error("--alpha: expected an output that ends in .png or .exr; found '%s'",
                            o->output);
     if (o->nearest + (o->interpolation > 0) + (given(o, &o->aperture) || given(o, &o->focus)) > 1)
         return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
+    if (relume_kind_of(args->input[0]) == RELUME_KIND_SCENE)
+        return run_scene(o);
     params.aperture = o->aperture;
     params.interpolation = o->nearest ? RELUME_INTERPOLATE_CONSTANT : o->interpolation;
     params.filter = o->filter;
     params.pass = o->pass == GLARE_PASS ? RELUME_PASS_COLOUR : o->pass;
     params.strength = &strength;
-    relume_status status = parse_camera(o, &camera);
+    status = parse_camera(o, &camera);
     if (!status)
         status = check_pass(o);
     if (!status)

@@ -14,7 +14,7 @@ static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_PICTURE, output, "OUT", "picture to write: .png, .jpg, .tif, ..."),
     GROUP("picture"),
-    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto: mid grey; default: auto",
+    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto, by the picture; default: auto",
                  "reinhard (default), filmic, gamma or linear (clip); .exr, .hdr and .pfm stay "
                  "linear"),
     {0},
@@ -29,8 +29,7 @@ static relume_status run_tonemap(const struct args *args)
     if (!status)
         status = develop(&image, &o->develop, o->output);
     if (!status)
-        status = relume_image_save(
-            &image, o->output, relume_image_params(.log = args->log, .profile = o->develop.icc));
+        status = save_developed(&image, &o->develop, o->output, args->log);
     relume_image_destroy(&image);
     return status;
 }

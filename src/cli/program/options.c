@@ -257,7 +257,8 @@ static relume_status take_given(struct command_line *l, const struct given *g)
         return say(l->log, RELUME_EINVAL, "%s: expected a value (%s); found an empty one", o->name,
                    o->argument);
     switch (o->kind) {
-    case OPTION_TEXTS: take_text(member, l, g); return RELUME_OK;
+    case OPTION_TEXTS:
+    case OPTION_FILES: take_text(member, l, g); return RELUME_OK;
     case OPTION_POINTS: return take_point(member, l, g);
     default: break;
     }
@@ -307,7 +308,7 @@ static relume_status expand_state(struct command_line *l, const char *text)
         for (int k = 0; !beside && k < l->given_count; k++)
             beside = l->given[k].option == o && !l->given[k].of_state;
         if (!beside && l->given_count < MOST_ARGUMENTS)
-            l->given[l->given_count++] = (struct given){o, entry[i].value, true};
+            l->given[l->given_count++] = (struct given){o, entry[i].value, true, false};
     }
     return status;
 }
@@ -330,13 +331,36 @@ static relume_status split_option(struct command_line *l, int *i, int argc, char
                                                 o->kind == OPTION_FLAG ? NULL
                                                 : equals               ? equals + 1
                                                                        : argv[++*i],
-                                                false};
+                                                false, false};
     return RELUME_OK;
+}
+
+// Returns the option that further files may belong to; NULL: none.
+static const struct option *open_option(const struct command_line *l)
+{
+    const struct given *last = l->given_count ? &l->given[l->given_count - 1] : NULL;
+    const bool open = last && last->option->kind == OPTION_FILES && !tree_is_folder(last->text);
+    return open ? last->option : NULL;
+}
+
+// Files after an OPTION_FILES are the command's where it has no other inputs.
+static void settle_files(struct command_line *l)
+{
+    const bool inputs = l->input_count > 0;
+    int n = 0;
+    for (int i = 0; i < l->given_count; i++) {
+        if (!inputs && l->given[i].follows)
+            l->input[l->input_count++] = l->given[i].text;
+        else
+            l->given[n++] = l->given[i];
+    }
+    l->given_count = n;
 }
 
 relume_status command_line_parse(struct command_line *l, int argc, char **argv)
 {
     relume_status status = relume_cpu_check(l->log);
+    const struct option *files = NULL;
     bool only_inputs = false;
     l->given_count = l->input_count = l->listed = l->pointed = 0;
     for (int i = 0; !status && i < argc; i++) {
@@ -347,11 +371,16 @@ relume_status command_line_parse(struct command_line *l, int argc, char **argv)
                        l->name ? l->name : "", l->name ? ": " : "");
         if (!only_inputs && !strcmp(argv[i], "--"))
             only_inputs = true;
-        else if (only_inputs || !is_option(argv[i]))
-            l->input[l->input_count++] = argv[i];
-        else
+        else if (!only_inputs && is_option(argv[i])) {
             status = split_option(l, &i, argc, argv);
+            files = status ? NULL : open_option(l);
+        } else if (files && !only_inputs)
+            l->given[l->given_count++] =
+                (struct given){.option = files, .text = argv[i], .follows = true};
+        else
+            l->input[l->input_count++] = argv[i];
     }
+    settle_files(l);
     const char *state = NULL;
     for (int i = 0; i < l->given_count; i++)
         if (l->given[i].option->kind == OPTION_STATE)

@@ -8,8 +8,8 @@
 #include <relume/image.h>
 #include <stddef.h>
 
-// OPTION_OUTPUT and those behind it are text that names what is written; OPTION_TEXT, OPTION_TEXTS
-// and inputs that name a file or folder are taken as read: no output replaces it. OPTION_PROSE
+// OPTION_OUTPUT and those behind it are text that names what is written; OPTION_TEXT, OPTION_TEXTS,
+// OPTION_FILES and inputs that name a file or folder are taken as read: no output replaces it. OPTION_PROSE
 // names none.
 enum option_kind {
     OPTION_GROUP,    // no option: the heading of the rows that follow
@@ -26,6 +26,7 @@ enum option_kind {
     OPTION_TRANSFER,  // struct relume_transfer
     OPTION_TEXT,
     OPTION_TEXTS,  // struct texts: may be repeated
+    OPTION_FILES,  // the same: takes several files after it
     OPTION_PROSE,  // text for people
     OPTION_STATE,  // a line of other options (state_line.h), before which those beside it count
     OPTION_OUTPUT,
@@ -116,6 +117,9 @@ struct entries {
     {ROW(name, OPTION_TRANSFER, OPTION_AT(struct relume_transfer, member), "T", help)}
 #define TEXTS(name, member, argument, help) \
     {ROW(name, OPTION_TEXTS, OPTION_AT(struct texts, member), argument, help)}
+// Files up to the next option belong to it, where inputs are left; a folder stands alone.
+#define FILES(name, member, argument, help) \
+    {ROW(name, OPTION_FILES, OPTION_AT(struct texts, member), argument, help)}
 #define TEXT(name, member, argument, help) TEXT_AS(OPTION_TEXT, name, member, argument, help)
 #define PROSE(name, member, argument, help) TEXT_AS(OPTION_PROSE, name, member, argument, help)
 #define TEXT_AS(kind, name, member, argument, help) \
@@ -131,6 +135,7 @@ struct given {
     const struct option *option;
     const char *text;  // NULL of a flag
     bool of_state;     // from the line of an OPTION_STATE
+    bool follows;      // one more file of the OPTION_FILES before it
 };
 
 // A command line and what it was split into. The texts are those of `argv`.

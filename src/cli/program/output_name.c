@@ -13,6 +13,13 @@ const char *name_ending(const char *path)
     return dot && dot > name ? dot : "";
 }
 
+bool has_words(const char *path)
+{
+    const char *ending = name_ending(path);
+    return !strcasecmp(ending, ".png") || !strcasecmp(ending, ".tif") ||
+           !strcasecmp(ending, ".tiff");
+}
+
 relume_status picture_name(const struct relume_log *log, const char *option, const char *path)
 {
     if (relume_image_can_save(path))
@@ -26,12 +33,12 @@ relume_status picture_name(const struct relume_log *log, const char *option, con
 relume_status floats_name(const struct relume_log *log, const char *option, const char *path)
 {
     const char *ending = name_ending(path);
-    if (!strcasecmp(ending, ".exr") || !strcasecmp(ending, ".pfm") ||
+    if (!strcasecmp(ending, ".exr") || !strcasecmp(ending, ".pfm") || has_words(path) ||
         (!*ending && relume_image_can_save(path)))
         return RELUME_OK;
     return say(log, RELUME_EINVAL,
                "%s: %s: this picture has values below 0 or above 1; expected .exr or .pfm, "
-               "which can hold them",
+               "which can hold them, or .png or .tif, scaled to 16 bits",
                option, path);
 }
 

@@ -13,6 +13,8 @@ relume_status floats_name(const struct relume_log *log, const char *option, cons
 relume_status rig_name(const struct relume_log *log, const char *option, const char *path);
 relume_status relume_name(const struct relume_log *log, const char *option, const char *path);
 
+// Returns true for the formats that hold 16 bits a sample.
+bool has_words(const char *path);
 // The ending of the last part of `path` with its dot; "" where there is none.
 const char *name_ending(const char *path);
 

@@ -5,6 +5,7 @@
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "image/image/photograph.h"
 #include "core/base/params.h"
 #include "core/base/scratch.h"
 #include "exchange/formats/kind.h"
@@ -54,14 +55,6 @@ static relume_status picture(const char *path, const char *out, const struct rel
     return still_write(path, out, p);
 }
 
-static bool is_web_rti(const char *folder, const struct relume_log *log)
-{
-    char *path = mem_format("%s/info.xml", folder);
-    const bool is = path && input_exists(path, log);
-    mem_free(path);
-    return is;
-}
-
 static relume_status unknown(const char *path, const struct relume_open_params *p)
 {
     const enum input_kind kind = input_kind(path, p->log);
@@ -73,11 +66,9 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
                         path);
-    if (is_web_rti(path, p->log))
-        return log_fail(p->log, RELUME_EUNSUPPORTED,
-                        "%s: tiles of WebRTI (info.xml), which relume does not read; expected the "
-                        ".ptm or .rti that they were made from",
-                        path);
+    const relume_status status = photographs_refuse_tiles(path, p->log);
+    if (status)
+        return status;
     return log_fail(
         p->log, RELUME_EFORMAT,
         "%s: a folder without capture.json, info.json or a single .lp file; if it holds "

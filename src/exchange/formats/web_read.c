@@ -31,6 +31,8 @@ struct folder {
     int luminance, chroma;  // mycc: planes of Y, of each chroma
     double *scale, *bias, *range;
     double *basis;  // [planes + 1][functions][3], 0..255
+    int listed;     // functions in the file; those of lights that are no numbers are left out
+    int *column;    // [functions.count] of the file's, where some are left out; NULL: all
     const struct relume_limits *limits;
     const struct relume_log *log;
 };
@@ -101,19 +103,33 @@ static relume_status read_lights(struct folder *w)
     if (!light)
         return RELUME_ENOMEM;
     w->f->functions.lights = light;
-    w->f->functions.count = (int)n;
+    w->column = mem_array(n, sizeof *w->column);
+    if (!w->column)
+        return RELUME_ENOMEM;
+    w->listed = (int)n;
+    int kept = 0;
     for (size_t i = 0; i < n; i++) {
         double v[3];
-        for (size_t c = 0; c < 3; c++)
-            if (!jvalue_number(jvalue_item(lights, 3 * i + c), &v[c]))
+        bool known = true;
+        for (size_t c = 0; c < 3; c++) {
+            const jvalue *number = jvalue_item(lights, 3 * i + c);
+            known &= !jvalue_text(number);  // blanked
+            if (known && !jvalue_number(number, &v[c]))
                 return refuse(w, RELUME_EDAMAGED, "lights", "finite numbers");
-        light[i] = vec3_of(v[0], v[1], v[2]);
-        const double length = vec3_length(light[i]);
+        }
+        if (!known)
+            continue;
+        light[kept] = vec3_of(v[0], v[1], v[2]);
+        const double length = vec3_length(light[kept]);
         if (!(length > 1e-4) || !isfinite(length))
             return refuse(w, RELUME_EDAMAGED, "lights",
                           "directions; found a vector without length");
-        light[i] = vec3_unit(light[i]);
+        light[kept] = vec3_unit(light[kept]);
+        w->column[kept++] = (int)i;
     }
+    if (!kept)
+        return refuse(w, RELUME_EDAMAGED, "lights", "finite numbers");
+    w->f->functions.count = kept;
     if (!jvalue_number(jvalue_member(w->root, "sigma"), &w->f->functions.sigma) ||
         !(w->f->functions.sigma > 1e-4 && w->f->functions.sigma < 1e4))
         return log_wrong(w->log, w->info, "sigma", "a number above 0");
@@ -227,22 +243,37 @@ static relume_status read_basis_file(struct folder *w, size_t size)
     return status;
 }
 
+// Moves the columns of the lights that are kept to the front, plane by plane.
+static void keep_columns(struct folder *w)
+{
+    double *to = w->basis;
+    for (int p = 0; w->column && p <= w->planes; p++)
+        for (int j = 0; j < w->f->functions.count; j++, to += 3)
+            memmove(to, w->basis + 3 * (p * w->listed + w->column[j]), 3 * sizeof *to);
+}
+
 static relume_status read_basis(struct folder *w)
 {
-    const size_t size = ((size_t)w->planes + 1) * (size_t)w->f->functions.count * 3;
+    const int listed = w->listed ? w->listed : w->f->functions.count;
+    const size_t size = ((size_t)w->planes + 1) * (size_t)listed * 3;
     const jvalue *basis = jvalue_member(w->root, "basis");
     const bool counted = !basis || jvalue_count(basis) == size;
     w->basis = counted ? mem_array(size, sizeof *w->basis) : NULL;
     if (counted && !w->basis)
         return RELUME_ENOMEM;
-    if (!basis)
-        return read_basis_file(w, size);
+    if (!basis) {
+        const relume_status status = read_basis_file(w, size);
+        if (!status)
+            keep_columns(w);
+        return status;
+    }
     if (!counted || !jvalue_numbers(basis, w->basis, size))
         return log_fail(w->log, RELUME_EDAMAGED, "%s: basis; expected %zu numbers, found %zu",
                         w->info, size, jvalue_count(basis));
     for (size_t i = 0; i < size; i++)
         if (w->basis[i] < 0.0 || w->basis[i] > 255.0)
             return refuse(w, RELUME_EDAMAGED, "basis", "numbers from 0 to 255");
+    keep_columns(w);
     return RELUME_OK;
 }
 
@@ -418,6 +449,51 @@ static relume_status find_folder(struct folder *w, const char *path)
     return w->at && w->info ? RELUME_OK : RELUME_ENOMEM;
 }
 
+// Turns bare nan and inf into "", in place; returns how many there were.
+static int blank_not_numbers(char *text)
+{
+    static const char *const words[] = {"-nan", "nan", "-inf", "inf"};
+    int found = 0;
+    bool quoted = false;
+    for (char *at = text; *at; at++) {
+        if (*at == '\\' && at[1])
+            at++;
+        else if (*at == '"')
+            quoted = !quoted;
+        for (size_t i = 0; !quoted && i < sizeof words / sizeof *words; i++) {
+            const size_t n = strlen(words[i]);
+            if (strncmp(at, words[i], n))
+                continue;
+            memset(at, ' ', n);
+            at[0] = at[1] = '"';
+            at += n - 1;
+            found++;
+            break;
+        }
+    }
+    return found;
+}
+
+// relight writes nan for lights that its list gives no direction.
+static relume_status load_info(struct folder *w)
+{
+    char *text;
+    size_t size;
+    relume_status status = input_load(&text, &size, w->info, UINT64_MAX, "a file", w->log);
+    if (status)
+        return status;
+    if (blank_not_numbers(text)) {
+        log_line(w->log, RELUME_WARNING,
+                 "%s: holds nan, which is no number; lights without a direction are left out",
+                 w->info);
+        status = jvalue_parse(&w->root, text, w->log);
+    } else {
+        status = jvalue_load(&w->root, w->info, w->log);
+    }
+    mem_free(text);
+    return status;
+}
+
 relume_status web_read(struct foreign *out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log)
 {
@@ -429,7 +505,7 @@ relume_status web_read(struct foreign *out, const char *path, const struct relum
     *out = (struct foreign){0};
     relume_status status = find_folder(&w, path);
     if (!status)
-        status = jvalue_load(&w.root, w.info, log);
+        status = load_info(&w);
     for (size_t i = 0; !status && i < sizeof steps / sizeof *steps; i++)
         status = steps[i](&w);
     if (!status && w.space >= SPACE_MRGB)
@@ -444,6 +520,7 @@ relume_status web_read(struct foreign *out, const char *path, const struct relum
     mem_free(w.bias);
     mem_free(w.range);
     mem_free(w.basis);
+    mem_free(w.column);
     if (status)
         foreign_free(out);
     return status;

@@ -411,28 +411,42 @@ static relume_status save_exr(const struct relume_image *image, const char *path
     return exr_write(path, p->writer, &part, 1, false, p->threads > 1 ? p->threads : 1, &quiet);
 }
 
-static relume_status save_bytes(const struct relume_image *image, const char *path,
+// Codes of `bytes` each, of light those of sRGB.
+static void quantise(void *out, const struct relume_image *image, size_t bytes, bool data)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    const float top = bytes == 2 ? 65535.0f : 255.0f;
+    uint8_t *narrow = out;
+    uint16_t *wide = out;
+    for (size_t i = 0; i < n; i++) {
+        const bool as_is = data || (image->channels == 4 && i % 4 == 3);
+        const float v = as_is ? image->data[i] : relume_transfer_encode(srgb, image->data[i]);
+        const int code = v >= 1.0f ? (int)top : v > 0.0f ? (int)(v * top + 0.5f) : 0;
+        if (bytes == 2)
+            wide[i] = (uint16_t)code;
+        else
+            narrow[i] = (uint8_t)code;
+    }
+}
+
+static relume_status save_codes(const struct relume_image *image, const char *path,
                                 const struct relume_image_params *p)
 {
     const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
-    uint8_t *bytes = mem_array(n, 1);
-    if (!bytes)
-        return RELUME_ENOMEM;
-    for (size_t i = 0; i < n; i++) {
-        const bool alpha = image->channels == 4 && i % 4 == 3;
-        const float v = alpha ? image->data[i] : relume_transfer_encode(srgb, image->data[i]);
-        bytes[i] = (uint8_t)(v >= 1.0f ? 255 : v > 0.0f ? (int)(v * 255.0f + 0.5f) : 0);
+    const size_t bytes = p->bits == 16 ? 2 : 1;
+    void *samples = mem_array(n, bytes);
+    struct picture_codes codes = {
+        .array = {samples, bytes, image->width, image->height, image->channels}, .data = p->codes};
+    void *profile = p->profile ? profile_srgb(&codes.profile_size) : NULL;
+    relume_status status = samples && (profile || !p->profile) ? RELUME_OK : RELUME_ENOMEM;
+    codes.profile = profile;
+    if (!status) {
+        quantise(samples, image, bytes, p->codes);
+        status = picture_write_codes(path, p->writer, &codes, p->log);
     }
-    size_t size = 0;
-    void *profile = p->profile ? profile_srgb(&size) : NULL;
-    const relume_status status =
-        p->profile && !profile
-            ? RELUME_ENOMEM
-            : picture_write_tagged(path, p->writer, image->width, image->height, image->channels,
-                                   bytes, profile, size, p->log);
     mem_free(profile);
-    mem_free(bytes);
+    mem_free(samples);
     return status;
 }
 
@@ -472,10 +486,13 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
                         "%s: no picture format for this ending; expected .exr, .png, .jpg, .tif, "
                         ".hdr, ...",
                         path);
+    if (p.bits == 16 && !picture_writes_words(path))
+        return log_fail(p.log, RELUME_EINVAL, "%s: no 16 bits in this format; expected .png or .tif",
+                        path);
     if (picture_has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
     if (picture_writes_floats(path))
         return picture_write_floats(path, p.writer, image->width, image->height, image->channels,
                                     image->data, p.log);
-    return save_bytes(image, path, &p);
+    return save_codes(image, path, &p);
 }

@@ -364,8 +364,8 @@ relume_status write_elsewhere(ImageOutput &output, const char *path, const relum
 }
 
 relume_status write_image(const char *path, const relume_writer *writer, int width, int height,
-                          int channels, TypeDesc type, const void *samples, const void *profile,
-                          size_t profile_size, picture_save *save, const relume_log *log)
+                          int channels, TypeDesc type, const void *samples,
+                          const picture_codes *codes, picture_save *save, const relume_log *log)
 {
     try {
         auto output = writer_for(path);
@@ -384,9 +384,10 @@ relume_status write_image(const char *path, const relume_writer *writer, int wid
         ImageSpec spec(width, height, channels, type);
         spec["CompressionQuality"] = 95;
         spec["jpeg:subsampling"] = "4:4:4";  // colour edges of paintings survive
-        spec["oiio:ColorSpace"] = type == TypeUInt8 ? "sRGB" : "Linear";
-        if (profile)
-            spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, int(profile_size)), profile);
+        spec["oiio:ColorSpace"] = codes && !codes->data ? "sRGB" : "Linear";
+        if (codes && codes->profile)
+            spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, int(codes->profile_size)),
+                           codes->profile);
         // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
         const bool in_memory =
             output->supports("ioproxy") && std::string(output->format_name()) != "tiff";
@@ -488,25 +489,25 @@ relume_status bridge_open(picture_reader **out, int file, const char *format_nam
     }
 }
 
-relume_status bridge_write_bytes(const char *path, const relume_writer *writer, int width,
-                                 int height, int channels, const uint8_t *samples,
-                                 const void *profile, size_t profile_size, picture_save *save,
+relume_status bridge_write_codes(const char *path, const relume_writer *writer,
+                                 const picture_codes *codes, picture_save *save,
                                  const relume_log *log)
 {
-    return write_image(path, writer, width, height, channels, TypeUInt8, samples, profile,
-                       profile_size, save, log);
+    const picture_array &a = codes->array;
+    return write_image(path, writer, a.width, a.height, a.channels,
+                       a.bytes == 2 ? TypeUInt16 : TypeUInt8, a.data, codes, save, log);
 }
 
 relume_status bridge_write_floats(const char *path, const relume_writer *writer, int width,
                                   int height, int channels, const float *samples,
                                   picture_save *save, const relume_log *log)
 {
-    return write_image(path, writer, width, height, channels, TypeFloat, samples, nullptr, 0, save,
+    return write_image(path, writer, width, height, channels, TypeFloat, samples, nullptr, save,
                        log);
 }
 
 }  // namespace
 
 extern "C" RELUME_API const oiio_bridge relume_oiio_bridge;
-const oiio_bridge relume_oiio_bridge = {RELUME_VERSION, bridge_open, bridge_write_bytes,
+const oiio_bridge relume_oiio_bridge = {RELUME_VERSION, bridge_open, bridge_write_codes,
                                         bridge_write_floats};

@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "image/image/image.h"
+#include "image/image/pages.h"
 #include "image/image/picture.h"
 #include "image/image/profile.h"
 
@@ -44,7 +45,7 @@ relume_status photograph_notes(struct relume_exif *out, const char *path,
 {
     picture_reader *reader;
     *out = (struct relume_exif){0};
-    relume_status status = picture_open(&reader, path, NULL, limits, log);
+    relume_status status = page_open(&reader, path, limits, log);
     if (status)
         return status;
     status = notes_of(out, reader, NULL, log);
@@ -152,7 +153,7 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_exi
     struct profile *profile = mem_array(1, sizeof *profile);
     if (!profile)
         return RELUME_ENOMEM;
-    relume_status status = picture_open(&reader, path, NULL, p.limits, p.log);
+    relume_status status = page_open(&reader, path, p.limits, p.log);
     if (status) {
         mem_free(profile);
         return status;

@@ -1,6 +1,7 @@
 // photographs.c - which of the files that somebody named are photographs
 #include <relume/image/photograph.h>
 
+#include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/params.h"
@@ -157,6 +158,21 @@ static relume_status add_folder(struct gathering *g, const char *folder)
     return status;
 }
 
+relume_status photographs_refuse_tiles(const char *folder, const struct relume_log *log)
+{
+    char *path = mem_format("%s/info.xml", folder);
+    struct infile in = {0};
+    const bool tiles = path && infile_open(&in, path, NULL, NULL);
+    infile_close(&in);
+    const relume_status status = path ? RELUME_OK : RELUME_ENOMEM;
+    mem_free(path);
+    return !tiles ? status
+                  : log_fail(log, RELUME_EUNSUPPORTED,
+                             "%s: tiles of WebRTI (info.xml), which relume does not read; "
+                             "expected the .ptm or .rti that they were made from, or photographs",
+                             folder);
+}
+
 static relume_status add_named(struct gathering *g, const char *path, bool alone)
 {
     struct stat s;
@@ -164,8 +180,10 @@ static relume_status add_named(struct gathering *g, const char *path, bool alone
         return log_fail(g->p->log, RELUME_ENOTFOUND,
                         "%s: %s; expected a photograph, or a folder of them", path,
                         errno == ENOENT ? "no such file" : strerror(errno));
-    if (S_ISDIR(s.st_mode) && (alone || !g->p->folders))
-        return add_folder(g, path);
+    if (S_ISDIR(s.st_mode) && (alone || !g->p->folders)) {
+        const relume_status status = photographs_refuse_tiles(path, g->p->log);
+        return status ? status : add_folder(g, path);
+    }
     char *copy = mem_text(path);
     return S_ISDIR(s.st_mode) ? add(g, copy) : add_file(g, copy, alone);
 }
@@ -215,9 +233,11 @@ static void choose_lights(struct gathering *g)
 
 // ---------------------------------------------------------------- folders below
 
+enum { FOLDERS_NAMED = 20 };
+
 struct below {
     int folders, most;  // that have photographs; in the one that has the most
-    char *folder, names[200];
+    char *folder, names[1000];
 };
 
 static int photographs_in(const char *folder, const struct relume_log *log)
@@ -244,7 +264,7 @@ static void look_below(struct below *b, const char *folder, const struct relume_
         char *path = mem_format("%s/%s", folder, entry[i]->d_name);
         const int count = path && tree_is_folder(path) ? photographs_in(path, log) : 0;
         const size_t used = strlen(b->names);
-        if (count && b->folders++ < 3)
+        if (count && b->folders++ < FOLDERS_NAMED)
             snprintf(b->names + used, sizeof b->names - used, "%s%.40s (%d)", used ? ", " : "",
                      entry[i]->d_name, count);
         mem_free_libc(entry[i]);
@@ -260,32 +280,51 @@ static void look_below(struct below *b, const char *folder, const struct relume_
         mem_free_libc(entry);
 }
 
+static void name_more(char more[32], const struct below *b)
+{
+    *more = '\0';
+    if (b->folders > FOLDERS_NAMED)
+        snprintf(more, 32, " and %d more", b->folders - FOLDERS_NAMED);
+}
+
+static relume_status refuse_for_below(const struct gathering *g, const char *folder, int count,
+                                      const struct below *b)
+{
+    const struct relume_photographs_params *p = g->p;
+    const char *q = relume_name_quotes(b->folder),
+               *lights = p->command && g->list->lights ? g->list->lights : "";
+    char here[32] = "no photographs", more[32];
+    if (count)
+        snprintf(here, sizeof here, "%d photograph%s", count, relume_plural(count));
+    name_more(more, b);
+    return log_fail(p->log, RELUME_ENOTFOUND,
+                    "%s: %s; folders below have %s: %s%s; %s %s%s%s%s%s%s", folder, here,
+                    count ? "more" : "some", b->names, more, p->command ? p->command : "give", q,
+                    b->folder, q, *lights ? " --lights " : "", lights,
+                    p->command ? " -o DIR" : "");
+}
+
 // Some that only have names of masks and normals are none here either.
 static relume_status check_below(const struct gathering *g, const char *folder)
 {
     const struct relume_photographs *list = g->list;
     const struct relume_photographs_params *p = g->p;
     struct below b = {0};
+    char more[32];
     int count = 0;
     for (int i = 0; i < list->count; i++)
         count += tree_is_folder(list->path[i]) || !by_product(list->path[i]);
-    if (count >= (p->least ? p->least : 1) || !tree_is_folder(folder))
+    const bool enough = count >= (p->least ? p->least : 1);
+    if (!tree_is_folder(folder) || (enough && (p->folders || p->quiet)))
         return RELUME_OK;
     look_below(&b, folder, p->log);
+    name_more(more, &b);
     relume_status status = RELUME_OK;
-    if (b.most > count) {
-        const char *q = relume_name_quotes(b.folder),
-                   *lights = p->command && list->lights ? list->lights : "";
-        char here[32] = "no photographs", more[32] = "";
-        if (count)
-            snprintf(here, sizeof here, "%d photograph%s", count, relume_plural(count));
-        if (b.folders > 3)
-            snprintf(more, sizeof more, " and %d more", b.folders - 3);
-        status = log_fail(
-            p->log, RELUME_ENOTFOUND, "%s: %s; folders below have %s: %s%s; %s %s%s%s%s%s%s",
-            folder, here, count ? "more" : "some", b.names, more, p->command ? p->command : "give",
-            q, b.folder, q, *lights ? " --lights " : "", lights, p->command ? " -o DIR" : "");
-    }
+    if (!enough && b.most > count)
+        status = refuse_for_below(g, folder, count, &b);
+    else if (enough && b.folders)
+        log_line(p->log, RELUME_NOTE, "%s: folders below are left out, with photographs: %s%s",
+                 folder, b.names, more);
     mem_free(b.folder);
     return status;
 }

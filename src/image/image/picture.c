@@ -327,19 +327,24 @@ relume_status picture_write_bytes(const char *path, const struct relume_writer *
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log)
 {
-    return picture_write_tagged(path, writer, width, height, channels, samples, NULL, 0, log);
+    const struct picture_codes codes = {
+        .array = {.data = samples, .bytes = 1, .width = width, .height = height, .channels = channels}};
+    return picture_write_codes(path, writer, &codes, log);
 }
 
-relume_status picture_write_tagged(const char *path, const struct relume_writer *writer, int width,
-                                   int height, int channels, const uint8_t *samples,
-                                   const void *profile, size_t size, const struct relume_log *log)
+bool picture_writes_words(const char *path)
+{
+    static const char *const words[] = {".png", ".tif", ".tiff", NULL};
+    return has_one_of(path, words);
+}
+
+relume_status picture_write_codes(const char *path, const struct relume_writer *writer,
+                                  const struct picture_codes *codes, const struct relume_log *log)
 {
     if (picture_has_extension(path, ".png"))
-        return png_write(path, writer, width, height, channels, samples, log);
+        return png_write(path, writer, codes, log);
     const relume_status status = need_bridge(path, log);
-    return status ? status
-                  : bridge->write_bytes(path, writer, width, height, channels, samples, profile,
-                                        size, outfile_save_to, log);
+    return status ? status : bridge->write_codes(path, writer, codes, outfile_save_to, log);
 }
 
 // Which OpenImageIO reads and does not write: rows from the bottom up, the sign says little endian.

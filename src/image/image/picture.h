@@ -73,10 +73,17 @@ bool picture_writes_bytes(const char *path);
 relume_status picture_write_bytes(const char *path, const struct relume_writer *writer, int width,
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log);
-// The same with an ICC profile of `size` bytes, which formats without one leave out; NULL: none.
-relume_status picture_write_tagged(const char *path, const struct relume_writer *writer, int width,
-                                   int height, int channels, const uint8_t *samples,
-                                   const void *profile, size_t size, const struct relume_log *log);
+// Samples of 1 or 2 bytes as they stand in a file.
+struct picture_codes {
+    struct picture_array array;
+    bool data;            // values that are no sRGB codes
+    const void *profile;  // ICC, which formats without one leave out; NULL: none
+    size_t profile_size;
+};
+// The same of these; of 2 bytes where picture_writes_words.
+bool picture_writes_words(const char *path);
+relume_status picture_write_codes(const char *path, const struct relume_writer *writer,
+                                  const struct picture_codes *codes, const struct relume_log *log);
 relume_status picture_write_floats(const char *path, const struct relume_writer *writer, int width,
                                    int height, int channels, const float *samples,
                                    const struct relume_log *log);

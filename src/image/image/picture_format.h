@@ -64,8 +64,8 @@ relume_status helped_picture_open(picture_reader **out, int file, const char *pa
                                   const struct relume_limits *limits, const struct relume_log *log);
 
 // RELUME_EIO, RELUME_ENOMEM.
-relume_status png_write(const char *path, const struct relume_writer *writer, int width, int height,
-                        int channels, const uint8_t *samples, const struct relume_log *log);
+relume_status png_write(const char *path, const struct relume_writer *writer,
+                        const struct picture_codes *codes, const struct relume_log *log);
 
 typedef relume_status picture_save(const char *path, const struct relume_writer *writer,
                                    const void *bytes, size_t size, const struct relume_log *log);
@@ -78,9 +78,8 @@ struct oiio_bridge {
     relume_status (*open)(picture_reader **out, int file, const char *format, const char *name,
                           const struct relume_limits *limits, const struct relume_log *log);
     // `save` is the library's own outfile_save_to, for `path` and `writer`.
-    relume_status (*write_bytes)(const char *path, const struct relume_writer *writer, int width,
-                                 int height, int channels, const uint8_t *samples,
-                                 const void *profile, size_t profile_size, picture_save *save,
+    relume_status (*write_codes)(const char *path, const struct relume_writer *writer,
+                                 const struct picture_codes *codes, picture_save *save,
                                  const struct relume_log *log);
     relume_status (*write_floats)(const char *path, const struct relume_writer *writer, int width,
                                   int height, int channels, const float *samples,

@@ -1,4 +1,4 @@
-// png.c - the one file that knows libpng: pictures of 8-bit grey or colour, perhaps with alpha
+// png.c - the one file that knows libpng: grey or colour, perhaps with alpha; reads 8 bits, writes 16
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -229,28 +229,33 @@ static void no_flush(png_structp png)
 // Of photographs more effort gains 4 % of the bytes in five times as long.
 enum { EFFORT = 2 };
 
-static bool encode(struct writer *w, int width, int height, int channels, const uint8_t *samples)
+static bool encode(struct writer *w, const struct picture_codes *codes)
 {
-    const size_t row = (size_t)width * (size_t)channels;
+    const struct picture_array *a = &codes->array;
+    const size_t row = (size_t)a->width * (size_t)a->channels * a->bytes;
     if (setjmp(w->trap.jump))
         return false;
     png_set_write_fn(w->png, w, append, no_flush);
-    png_set_IHDR(w->png, w->info, (png_uint_32)width, (png_uint_32)height, 8,
-                 channels == 4   ? PNG_COLOR_TYPE_RGB_ALPHA
-                 : channels == 3 ? PNG_COLOR_TYPE_RGB
-                                 : PNG_COLOR_TYPE_GRAY,
+    png_set_IHDR(w->png, w->info, (png_uint_32)a->width, (png_uint_32)a->height,
+                 8 * (int)a->bytes,
+                 a->channels == 4   ? PNG_COLOR_TYPE_RGB_ALPHA
+                 : a->channels == 3 ? PNG_COLOR_TYPE_RGB
+                                    : PNG_COLOR_TYPE_GRAY,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_compression_level(w->png, EFFORT);
-    png_set_sRGB(w->png, w->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (!codes->data)
+        png_set_sRGB(w->png, w->info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(w->png, w->info);
-    for (int y = 0; y < height; y++)
-        png_write_row(w->png, samples + (size_t)y * row);
+    if (a->bytes == 2 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
+        png_set_swap(w->png);
+    for (int y = 0; y < a->height; y++)
+        png_write_row(w->png, (const uint8_t *)a->data + (size_t)y * row);
     png_write_end(w->png, NULL);
     return true;
 }
 
-relume_status png_write(const char *path, const struct relume_writer *writer, int width, int height,
-                        int channels, const uint8_t *samples, const struct relume_log *log)
+relume_status png_write(const char *path, const struct relume_writer *writer,
+                        const struct picture_codes *codes, const struct relume_log *log)
 {
     struct writer *w = mem_zeroed(1, sizeof *w);
     if (w)
@@ -259,7 +264,7 @@ relume_status png_write(const char *path, const struct relume_writer *writer, in
     if (w && w->png)
         w->info = png_create_info_struct(w->png);
     relume_status status = w && w->info ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && !encode(w, width, height, channels, samples))
+    if (!status && !encode(w, codes))
         status = w->trap.short_of_memory
                      ? RELUME_ENOMEM
                      : log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text);

@@ -93,17 +93,24 @@ static const int black_ev = 20;                  // below the brightest
 // Below what is bright: with that as white, less than a code of 8 bits of the sRGB curve.
 static const double unseen_ev = 11.7;
 static const double most_ev = 16.0;
+static const double bright_part = 0.99, bright_value = 0.9;
+
+// The bin of a value; -1 where it has none.
+static int bin_at(float value)
+{
+    const double place = ((double)log2f(value) + RANGE_EV) * PER_EV;
+    return value > 0.0f && place >= 0.0 && place < BINS ? relume_whole(place) : -1;
+}
 
 static size_t count_bins(size_t bin[BINS], const struct relume_image *image)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;
     size_t count = 0;
     for (size_t i = 0; i < pixels; i++) {
-        const float l = luminance_709f(image->data + 3 * i);
-        const double place = ((double)log2f(l) + RANGE_EV) * PER_EV;
-        if (!(l > 0.0f) || !(place >= 0.0 && place < BINS))
+        const int at = bin_at(luminance_709f(image->data + 3 * i));
+        if (at < 0)
             continue;
-        bin[relume_whole(place)]++;
+        bin[at]++;
         count++;
     }
     return count;
@@ -153,4 +160,30 @@ double relume_tone_meter(const struct relume_image *image)
         below = above;
     }
     return fmin(fmax(log2(mid_grey) - sum / weight, -most_ev), most_ev);
+}
+
+double relume_tone_meter_bright(const struct relume_image *image)
+{
+    size_t bin[BINS] = {0}, count = 0;
+    if (!image->data || image->channels != 3)
+        return 0.0;
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < pixels; i++) {
+        const float *p = image->data + 3 * i;
+        const int at = bin_at(fmaxf(p[0], fmaxf(p[1], p[2])));
+        if (at < 0)
+            continue;
+        bin[at]++;
+        count++;
+    }
+    if (!count)
+        return 0.0;
+    const double top = (bin_of(bin, bright_part * (double)count) + 0.5) / PER_EV - RANGE_EV;
+    return fmin(fmax(log2(bright_value) - top, -most_ev), most_ev);
+}
+
+double relume_tone_meter_for(const struct relume_image *image, const struct relume_tone *tone)
+{
+    return !tone || tone == &relume_tone_linear ? relume_tone_meter_bright(image)
+                                                : relume_tone_meter(image);
 }

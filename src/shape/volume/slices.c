@@ -4,6 +4,7 @@
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
+#include "image/image/pages.h"
 #include "image/image/picture.h"
 
 #include <errno.h>
@@ -115,43 +116,12 @@ relume_status volume_read_slices(struct store *s, const char *path,
 
 // ---------------------------------------------------------------- pages
 
-enum { PAGES_MOST = 65536 };
-
-static uint64_t whole_at(const uint8_t *at, int bytes, bool big)
-{
-    uint64_t v = 0;
-    for (int i = 0; i < bytes; i++)
-        v |= (uint64_t)at[i] << 8 * (big ? bytes - 1 - i : i);
-    return v;
-}
-
-// Directories follow each other (TIFF 6.0; BigTIFF): so many entries, then where the next one is;
-// -1 where one lies beyond the end of the file. Readers of pictures take that for the last one.
-static int chain_length(struct infile *in)
-{
-    uint8_t word[16] = {0};
-    bool good = infile_read(in, word, sizeof word, 0) >= 8;
-    const bool big_end = word[0] == 'M', wide = whole_at(word + 2, 2, big_end) == 43;
-    const int place = wide ? 8 : 4, number = wide ? 8 : 2, entry = wide ? 20 : 12;
-    uint64_t at = whole_at(word + (wide ? 8 : 4), place, big_end);
-    int count = 0;
-    for (; good && at && count <= PAGES_MOST; count++) {
-        good = at < in->size && infile_read(in, word, (size_t)number, at) == number;
-        const uint64_t entries = whole_at(word, number, big_end);
-        good = good && entries < 65536;
-        at += (uint64_t)number + entries * (uint64_t)entry;
-        good = good && infile_read(in, word, (size_t)place, at) == place;
-        at = whole_at(word, place, big_end);
-    }
-    return good ? count : -1;
-}
-
 static relume_status count_pages(int *count, const char *path, const struct relume_log *log)
 {
     struct infile in;
     if (!infile_open(&in, path, NULL, log))
         return relume_input_fail(log, path, "cannot be opened", errno);
-    *count = chain_length(&in);
+    *count = tiff_pages(&in);
     infile_close(&in);
     if (*count < 0)
         return log_fail(log, RELUME_EDAMAGED, "%s: truncated or damaged TIFF; a page is missing",

@@ -204,21 +204,30 @@ static relume_status write_lp(const struct acquisition *s, const char *path)
     return relume_file_print(path, print_lp, s, s->p.log);
 }
 
-static relume_status copy_mask(const struct acquisition *s, const char *path)
+relume_status acquire_load_mask(struct relume_image *out, const struct acquisition *s)
 {
     const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
-    struct relume_image mask;
+    *out = (struct relume_image){0};
     if (!s->p.mask)
         return RELUME_OK;
     relume_status status = relume_image_load(
-        &mask, s->p.mask,
+        out, s->p.mask,
         relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
-    if (!status && (mask.width != s->whole[0] || mask.height != s->whole[1]))
+    if (!status && (out->width != s->whole[0] || out->height != s->whole[1]))
         status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
-                          s->p.mask, mask.width, mask.height, s->whole[0], s->whole[1]);
+                          s->p.mask, out->width, out->height, s->whole[0], s->whole[1]);
     if (!status && s->out->crop[2])
-        status = acquire_crop_image(&mask, s->out->crop);
-    if (!status)
+        status = acquire_crop_image(out, s->out->crop);
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}
+
+static relume_status copy_mask(const struct acquisition *s, const char *path)
+{
+    struct relume_image mask;
+    relume_status status = acquire_load_mask(&mask, s);
+    if (mask.data)
         status = relume_image_save(&mask, path, relume_image_params(.log = s->p.log, .half = true));
     relume_image_destroy(&mask);
     return status;

@@ -128,9 +128,18 @@ relume_status acquire_describe(const struct acquisition *s,
                                void *context);
 relume_status acquire_fit(struct acquisition *s, const relume_capture *capture);
 void acquire_release(struct acquisition *s);
-// Keeps a picture that has no folder, where it is not as its file is. RELUME_ENOMEM, RELUME_EIO.
+// Saves a picture in the folder, and reads it again. An input status, RELUME_EIO, RELUME_ENOMEM.
+relume_status acquire_save(struct acquisition *s, struct shot *shot,
+                           const struct relume_image *image);
+relume_status acquire_fetch(struct relume_image *out, const struct acquisition *s,
+                            const struct shot *shot);
+// The same without a folder: a picture is kept where it is not as its file is.
 relume_status acquire_keep(struct acquisition *s, struct shot *shot,
                            const struct relume_image *image);
+relume_status acquire_kept(struct relume_image *out, const struct acquisition *s,
+                           const struct shot *shot);
+// The mask of the pictures, cropped as they are; empty without one. An input status.
+relume_status acquire_load_mask(struct relume_image *out, const struct acquisition *s);
 
 // Finds the photographs, masks and lights that the params name, or that lie beside. An input
 // status.

@@ -290,23 +290,16 @@ relume_status acquire_crop_image(struct relume_image *image, const int crop[4])
 
 static relume_status crop_shot(struct acquisition *s, struct shot *shot)
 {
-    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
-    char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
     struct relume_image image = {0};
-    relume_status status =
-        path ? relume_image_load(&image, path,
-                                 relume_image_params(.log = s->p.log, .transfer = linear))
-             : RELUME_ENOMEM;
+    relume_status status = acquire_fetch(&image, s, shot);
     if (!status)
         status = acquire_crop_image(&image, s->out->crop);
     if (!status)
-        status = relume_image_save(&image, path,
-                                   relume_image_params(.log = s->p.log, .half = true));
+        status = acquire_save(s, shot, &image);
     relume_image_destroy(&shot->small);
     if (!status)
         status = acquire_shrink(&shot->small, &image);
     relume_image_destroy(&image);
-    mem_free(path);
     return status;
 }
 

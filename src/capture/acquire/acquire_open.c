@@ -20,7 +20,7 @@
 static bool is_changed(const struct acquisition *s, const struct shot *shot)
 {
     const bool follows_profile = shot->notes.profile && s->p.transfer.curve == RELUME_CURVE_AUTO;
-    return follows_profile || shot->notes.orientation > 1 || s->orientation > 1 ||
+    return s->out->crop[2] || follows_profile || shot->notes.orientation > 1 || s->orientation > 1 ||
            shot->shift[0] != 0.0 || shot->shift[1] != 0.0;
 }
 
@@ -45,6 +45,19 @@ relume_status acquire_keep(struct acquisition *s, struct shot *shot,
     for (size_t i = 0; shot->changed.halves && i < values; i++)
         shot->changed.halves[i] = half_from_float(image->data[i]);
     return shot->changed.halves ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status acquire_kept(struct relume_image *out, const struct acquisition *s,
+                           const struct shot *shot)
+{
+    const uint16_t *halves = shot->changed.halves;
+    const relume_status status =
+        halves ? relume_image_create(out, s->width, s->height, 3)
+               : acquire_load(out, NULL, s, shot->path, s->p.transfer);
+    const size_t values = status ? 0 : 3 * (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; i < values; i++)
+        out->data[i] = float_from_half(halves ? halves[i] : half_from_float(out->data[i]));
+    return status;
 }
 
 // ---------------------------------------------------------------- the capture
@@ -78,6 +91,15 @@ static relume_status name_files(struct opening *o)
     return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
+static relume_status load_mask(struct relume_image *out, const struct acquisition *s)
+{
+    const relume_status status = acquire_load_mask(out, s);
+    const size_t values = out->data ? (size_t)out->width * (size_t)out->height : 0;
+    for (size_t i = 0; i < values; i++)
+        out->data[i] = float_from_half(half_from_float(out->data[i]));
+    return status;
+}
+
 static relume_status make_capture(relume_capture **out, struct acquisition *s)
 {
     struct opening o = {.s = s};
@@ -85,6 +107,8 @@ static relume_status make_capture(relume_capture **out, struct acquisition *s)
         .draft = &o.draft, .width = s->width, .height = s->height, .path = s->p.lights};
     files.changed = mem_zeroed((size_t)s->shots, sizeof *files.changed);
     relume_status status = files.changed ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = load_mask(&files.mask, s);
     if (!status)
         status = acquire_describe(s, parse_manifest, &o);
     if (!status)
@@ -97,8 +121,10 @@ static relume_status make_capture(relume_capture **out, struct acquisition *s)
         status = capture_of_files(out, &files, s->opening);
     for (int i = 0; !status && i < s->shots; i++)
         s->shot[i].changed = (struct changed_picture){0};
-    if (status)
+    if (status) {
         mem_free(files.changed);
+        relume_image_destroy(&files.mask);
+    }
     draft_free(&o.draft);
     return status;
 }
@@ -221,6 +247,13 @@ relume_status relume_capture_open_photographs(relume_capture **out, const char *
     *into = (struct relume_acquisition){0};
     relume_status status = relume_capture_open(&list, path, params);
     *out = list;
+    if (!status && !is_list(list) && (a.crop_auto || a.crop[2])) {
+        status = log_fail(p.log, RELUME_EUNFIT,
+                          "%s: a capture already; expected a list of photographs for --crop, or "
+                          "relume capture --crop",
+                          path);
+        relume_capture_destroy(out);
+    }
     if (status || !is_list(list))
         return status;
     p.limits = limits_of(p.limits, p.log);

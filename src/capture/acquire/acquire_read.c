@@ -139,14 +139,29 @@ static relume_status align(struct acquisition *s, int i, struct relume_image *im
     return status;
 }
 
-static relume_status save(struct acquisition *s, struct shot *shot,
-                          const struct relume_image *image)
+relume_status acquire_save(struct acquisition *s, struct shot *shot,
+                           const struct relume_image *image)
 {
     if (!s->dir)
         return acquire_keep(s, shot, image);
     char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
     const relume_status status =
         path ? relume_image_save(image, path, relume_image_params(.log = s->p.log, .half = true))
+             : RELUME_ENOMEM;
+    mem_free(path);
+    return status;
+}
+
+relume_status acquire_fetch(struct relume_image *out, const struct acquisition *s,
+                            const struct shot *shot)
+{
+    if (!s->dir)
+        return acquire_kept(out, s, shot);
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
+    const relume_status status =
+        path ? relume_image_load(out, path,
+                                 relume_image_params(.log = s->p.log, .transfer = linear))
              : RELUME_ENOMEM;
     mem_free(path);
     return status;
@@ -239,7 +254,7 @@ static relume_status take_photograph(struct acquisition *s, int i, struct relume
         status = acquire_shrink(&shot->small, image);
     if (!status && !shot->ball_path && !s->p.lights)
         status = add_to_mean(s, image);
-    return status ? status : save(s, shot, image);
+    return status ? status : acquire_save(s, shot, image);
 }
 
 // Forgets the sums and the small pictures of a first reading.

@@ -2,7 +2,6 @@
 #include "capture/manifest/capture.h"
 
 #include "capture/manifest/reflectance_table.h"
-#include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 #include "core/base/scratch.h"
@@ -33,6 +32,7 @@ void relume_capture_destroy(relume_capture **capture)
     for (int i = 0; (*capture)->owned_changed && i < (*capture)->pictured; i++)
         changed_picture_free(&(*capture)->owned_changed[i]);
     mem_free((*capture)->owned_changed);
+    relume_image_destroy(&(*capture)->owned_mask);
     mem_free((*capture)->path);
     mem_free(*capture);
     *capture = NULL;
@@ -175,9 +175,6 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
     const relume_status status = image_load_large(
         out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored),
         capture->scratch);
-    const size_t values = (size_t)out->width * (size_t)out->height;
-    for (size_t i = 0; !status && capture->rounded && i < values; i++)
-        out->data[i] = float_from_half(half_from_float(out->data[i]));
     if (status || (out->width == capture->width && out->height == capture->height))
         return status;
     const int width = out->width, height = out->height;

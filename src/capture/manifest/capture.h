@@ -23,6 +23,7 @@ struct relume_capture {
     size_t owned_bytes;
     const struct changed_picture *changed;  // [pictured], or NULL: all are as their files
     struct changed_picture *owned_changed;  // the same where they are the capture's own
+    struct relume_image owned_mask;         // pictures.mask where it is the capture's own
     bool rounded;         // integers of files are rounded as in a capture's folder
     const int *light_of;  // [lights]: of those; NULL: the same
     int width, height;
@@ -57,6 +58,7 @@ struct capture_files {
     struct draft *draft;              // what capture.json would say, the files being its images; is
                                       // taken over
     struct changed_picture *changed;  // [lights], or NULL; belongs to the capture, unless it fails
+    struct relume_image mask;         // empty: none; likewise
     int width, height;
     bool floats;       // one of them holds floating-point numbers
     const char *path;  // begins sentences

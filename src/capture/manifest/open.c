@@ -249,6 +249,13 @@ relume_status capture_finish(relume_capture **out, relume_capture *c,
     return status;
 }
 
+static void take_files(relume_capture *c, const struct capture_files *files)
+{
+    c->changed = c->owned_changed = files->changed;
+    c->owned_mask = files->mask;
+    c->pictures.mask = files->mask.data;
+}
+
 relume_status capture_of_files(relume_capture **out, const struct capture_files *files,
                                const struct relume_capture_params *p)
 {
@@ -270,7 +277,7 @@ relume_status capture_of_files(relume_capture **out, const struct capture_files 
     if (!status)
         status = settle(c, p);
     if (!status)
-        c->changed = c->owned_changed = files->changed;
+        take_files(c, files);
     else
         relume_capture_destroy(&c);
     *out = c;

@@ -50,6 +50,7 @@ static relume_status fill(relume_capture *c, const relume_capture *from, const i
     c->owned = NULL;  // it stays the whole capture's, which unmaps it
     c->owned_bytes = 0;
     c->owned_changed = NULL;
+    c->owned_mask = (struct relume_image){0};
     c->draft.m.lights = n;
     c->path = mem_text(from->path);
     if (!c->path || !select_lights(&c->draft, &from->draft, light, n) ||

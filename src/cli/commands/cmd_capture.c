@@ -1,5 +1,6 @@
 // cmd_capture.c - relume capture PHOTO ... -o DIR: a light sequence becomes a capture
 #include "cli/commands/film_frames.h"
+#include "cli/commands/crop_option.h"
 #include "cli/frame_options.h"
 
 #include <math.h>
@@ -10,10 +11,7 @@ struct capture_options {
     const char *output, *mask, *ball_mask, *lights, *normals, *albedo, *height, *encode, *relight;
     struct relume_transfer transfer, ball_transfer;
     double white[4], target_corners[8];
-    struct crop {
-        bool automatic;
-        int part[4];
-    } crop;
+    struct crop crop;
     const char *target, *target_values;
     enum { ALIGN_AUTO, ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
@@ -27,21 +25,6 @@ struct capture_options {
 #define OPTIONS struct capture_options
 enum { FRAMES = 60 };  // of a film
 
-static relume_status take_crop(void *place, const struct option *o, const char *text,
-                               const struct relume_log *log)
-{
-    struct crop crop = {.automatic = !strcmp(text, "auto")};
-    int end = -1;
-    const int n = sscanf(text, "%d,%d,%d,%d%n", &crop.part[0], &crop.part[1], &crop.part[2],
-                         &crop.part[3], &end);
-    const bool good = n == 4 && end == (int)strlen(text) && crop.part[2] > 0 && crop.part[3] > 0;
-    memcpy(place, &crop, sizeof crop);
-    return crop.automatic || good
-               ? RELUME_OK
-               : say(log, RELUME_EINVAL,
-                     "%s: expected auto, or four whole numbers x,y,w,h; found '%s'", o->name, text);
-}
-
 static const struct option options[] = {
     GROUP("output"),
     OUTPUT(OPTION_OUTPUT, output, "DIR", "the capture folder to make"),
@@ -50,8 +33,7 @@ static const struct option options[] = {
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; default: by file"),
     TEXT("--mask", mask, "FILE", "a mask: white where the object is"),
-    OWN("--crop", crop, "x,y,w,h",
-        "keep this part of the photographs, or auto: the object without ball and table", take_crop),
+CROP_OPTION,
     INT("--frames", frames, "N", "a film of a moving lamp: frames to keep; default: 60", 3,
         FILM_FRAMES_MOST),
     FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),
@@ -166,8 +148,7 @@ static struct relume_acquire_params read_options(const struct capture_options *o
         .width_mm = o->width,
     };
     p.crop_auto = o->crop.automatic;
-    for (int i = 0; i < 4 && !o->crop.automatic; i++)
-        p.crop[i] = o->crop.part[i];
+    memcpy(p.crop, o->crop.part, sizeof p.crop);
     for (int i = 0; i < 4; i++)
         p.white[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
     return p;

@@ -1,6 +1,7 @@
 // cmd_encode.c - relume encode: a capture into a relume file
 #include "cli/book_options.h"
 #include "cli/cli.h"
+#include "cli/commands/crop_option.h"
 #include "cli/kept_notes.h"
 #include "encode_parts.h"
 #include "encode_report.h"
@@ -24,6 +25,7 @@ struct encode_options {
     unsigned luminance;
     bool robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
+    struct crop crop;
     struct which_part part;
     const char *learnt;
     bool learn_only;
@@ -99,6 +101,7 @@ static const struct option options[] = {
          RELUME_MOVING_AUTO, "auto", "yes", "no"),
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
+    CROP_OPTION,
     FLAG("--skip-missing", skip_missing, "leave out lights whose image does not exist"),
     ALLOW_OUTSIDE_OPTION,
     FLAG("--repair", repair,
@@ -125,13 +128,14 @@ static const struct option options[] = {
 // Opens the capture, encodes it, and prints how good the file is.
 static relume_status encode(const struct args *args, const char *input, const char *output,
                             const struct relume_capture_params *open,
+                            const struct relume_acquire_params *acquire,
                             const struct relume_encode_capture_params *params)
 {
     struct relume_encode_result result;
     struct relume_capture_params own = *open;
     relume_capture *capture;
     own.keep_bytes = relume_encode_rereads(params) ? KEEP_BYTES : 0;
-    relume_status status = relume_capture_open_photographs(&capture, input, &own, NULL, NULL);
+    relume_status status = relume_capture_open_photographs(&capture, input, &own, acquire, NULL);
     if (!status)
         status = relume_encode_capture(output, capture, &result, params);
     if (!status)
@@ -204,6 +208,7 @@ static relume_status encode_as_asked(const struct encode_options *o)
     const size_t length = strlen(o->output);
     const bool books = o->books.codes > 0;
     struct relume_encode_capture_params params = params_of(o);
+    struct relume_acquire_params acquire = *relume_acquire_params(.threads = args->threads);
     struct relume_books_params books_params;
     struct options_text text;
     if (length && o->output[length - 1] == '/')
@@ -211,6 +216,8 @@ static relume_status encode_as_asked(const struct encode_options *o)
     relume_status status = parse_books(args, &o->books, books, &books_params);
     params.books = books ? &books_params : NULL;
     params.options = text.text;
+    acquire.crop_auto = o->crop.automatic;
+    memcpy(acquire.crop, o->crop.part, sizeof acquire.crop);
     if (!status)
         status = options_text(&text, args, options, not_kept);
     if (!status)
@@ -225,7 +232,7 @@ static relume_status encode_as_asked(const struct encode_options *o)
                                         .allow_outside = o->allow_outside,
                                         .assume_depth = o->assume_depth, .repair = o->repair,
                                         .scratch = o->output),
-                  &params);
+                  &acquire, &params);
 }
 
 // Notes in the file that is replaced stay.
@@ -240,7 +247,7 @@ static relume_status run_encode(const struct args *args)
 relume_status encode_as_usual(const struct args *args, const char *capture, const char *output)
 {
     return encode(
-        args, capture, output, relume_capture_params(.log = args->log),
+        args, capture, output, relume_capture_params(.log = args->log), NULL,
         relume_encode_capture_params(.log = args->log, .threads = args->threads, .name = capture));
 }
 

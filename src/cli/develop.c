@@ -29,7 +29,7 @@ relume_status check_bits(const struct develop_options *o, const char *path)
 relume_status save_developed(const struct relume_image *frame, const struct develop_options *o,
                              const char *path, const struct relume_log *log)
 {
-    return relume_image_save(frame, path,
-                             relume_image_params(.log = log, .profile = o->icc,
-                                                 .bits = o->bits == BITS_16 ? 16 : 8));
+    return relume_image_save(
+        frame, path,
+        relume_image_params(.log = log, .profile = o->icc, .bits = o->bits == BITS_16 ? 16 : 8));
 }

@@ -12,7 +12,7 @@ struct develop_options {
 };
 // Table rows for a command's options; `develop` in its struct.
 #define DEVELOP_OPTIONS                                                                            \
-    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto, by the picture; default: 0",               \
+    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto, by the picture; default: 0",         \
                  "linear (clip, default), reinhard, filmic or gamma; .exr, .hdr and .pfm stay "    \
                  "linear")
 #define DEVELOP_ROWS(exposure_help, tone_help)                                                     \
@@ -28,10 +28,11 @@ struct develop_options {
 // In place, for a file of that name: linear formats stay linear.
 relume_status develop(struct relume_image *frame, const struct develop_options *options,
                       const char *path);
-// RELUME_EINVAL with a sentence where a file of that name cannot have the bits.
+// RELUME_EINVAL where a file of that name cannot have the bits.
 relume_status check_bits(const struct develop_options *options, const char *path);
 // Save it with the profile and the bits that are asked for.
-relume_status save_developed(const struct relume_image *frame, const struct develop_options *options,
-                             const char *path, const struct relume_log *log);
+relume_status save_developed(const struct relume_image *frame,
+                             const struct develop_options *options, const char *path,
+                             const struct relume_log *log);
 
 #endif

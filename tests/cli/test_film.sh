@@ -26,10 +26,10 @@ for last; do :; done
 [ -e "$here/broken" ] && exit 1
 [ "$last" = pipe:1 ] && exec cat "$here/grey.raw"
 echo "$*" | grep -o 'eq(n[^)]*)' | tr -dc '0-9\n' >"$here/chosen.txt"
-to=$(dirname "${last#file:}") n=0
+n=0
 for f in "$here"/frames/*; do
     n=$((n + 1))
-    [ $n -le "$(wc -l <"$here/chosen.txt")" ] && cp "$f" "$to/$(printf %05d.png $n)"
+    [ $n -le "$(wc -l <"$here/chosen.txt")" ] && cp "$f" "$(printf "${last#file:}" $n)"
 done
 exit 0
 END
@@ -40,7 +40,7 @@ check 'one frame of each light, none blurred' test "$(tr '\n' ' ' <chosen.txt)" 
 relume capture photos -o photographs
 for i in 00 07; do same "photograph $i" film/light00$i.exr photographs/light00$i.exr; done
 same 'the lights' film/lights.lp photographs/lights.lp
-check 'frames have the name of the film' grep -q '"file": "torch; rm x-000013.png"' film/capture.json
+check 'frames have the name of the film' grep -q '"file": "torch; rm x-0007.png"' film/capture.json
 expect_fail 'too few frames' 2 'frames: expected a whole number from 3 to 512' out env PATH="$work/fake:$PATH" "$RELUME" capture 'torch; rm x.mov' -o out --frames 2
 bytes 480 '\310' >grey.raw
 expect_fail 'a lamp that stands still' 1 '2 frames show 1 lights; expected a film in which a lamp moves' out env PATH="$work/fake:$PATH" "$RELUME" capture 'torch; rm x.mov' -o out

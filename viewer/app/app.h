@@ -32,8 +32,8 @@ int app_passes(const struct app *app);
 
 // The exposure to draw with, EV.
 double app_exposure_ev(const struct app *app);
-// The frame drawn with that exposure would be as relume_tone_meter_for has it with `ev` more. The first frame of a file
-// is followed at once, later ones as time passes.
+// The frame drawn with that exposure would be as relume_tone_meter_for has it with `ev` more. The
+// first frame of a file is followed at once, later ones as time passes.
 void app_meter(struct app *app, double ev);
 
 // The eye's distance from the st plane (several slabs: from the middle) times `factor`, within

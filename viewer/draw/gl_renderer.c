@@ -269,8 +269,7 @@ relume_status gl_renderer_read(struct relume_image *out, const struct gl_rendere
     return target_read(out, r->shown, r->gl);
 }
 
-relume_status gl_renderer_meter(double *ev, struct gl_renderer *r,
-                                const struct relume_tone *tone)
+relume_status gl_renderer_meter(double *ev, struct gl_renderer *r, const struct relume_tone *tone)
 {
     enum { SIDE = 128 };
     const int width = r->frame.width < SIDE ? r->frame.width : SIDE;

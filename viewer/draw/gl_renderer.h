@@ -66,7 +66,7 @@ bool gl_renderer_is_pending(const struct gl_renderer *renderer);
 relume_status gl_renderer_draw(struct gl_renderer *renderer, const struct frame_request *request);
 // The last frame as an image, linear; the caller destroys it.
 relume_status gl_renderer_read(struct relume_image *out, const struct gl_renderer *renderer);
-// What relume_tone_meter_for says of the last frame, seen through a small copy of it.
+// Meters a small copy of the last frame, as relume_tone_meter_for does.
 relume_status gl_renderer_meter(double *ev, struct gl_renderer *renderer,
                                 const struct relume_tone *tone);
 // The last frame by relume_tones[tone] onto a framebuffer of its size, coded for the screen (0: the

@@ -295,7 +295,8 @@ static relume_status meter_frame(struct session *s)
 {
     const double before = app_exposure_ev(&s->app);
     double ev;
-    const relume_status status = gl_renderer_meter(&ev, &s->renderer, relume_tones[s->app.now.tone]);
+    const relume_status status =
+        gl_renderer_meter(&ev, &s->renderer, relume_tones[s->app.now.tone]);
     if (status)
         return status;
     app_meter(&s->app, ev);

@@ -72,8 +72,8 @@ struct relume_acquire_params {
                            // shifts of half a pixel and more are found and taken out
 
     // The part of the photographs that the capture holds, once the lights are known: x, y, width,
-    // height in pixels; width 0: all. The window keeps its place in the world, so that near lights,
-    // masks and scales stay right.
+    // height in pixels; width 0: all. The window keeps its coordinates, so that near lights, masks
+    // and scales stay right.
     int crop[4];
     bool crop_auto;  // the object, by its relief, without balls and table; all where it fills them
 

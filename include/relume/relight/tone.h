@@ -48,10 +48,10 @@ RELUME_RESULT relume_status relume_tone_apply(struct relume_image *image,
 // left out, and so is what is black: 2^-20 of the brightest and below, and what would be 0 in 8
 // bits if that fiftieth began at white. 0 for a black image.
 RELUME_API double relume_tone_meter(const struct relume_image *image);
-// The exposure in EV that takes the bright parts of `image` to 0.9, in [-16, 16]: the 99th
-// percentile of the pixels' largest channels, black ones left out. 0 for a black image.
+// The exposure in EV that takes the bright parts of `image` to 0.9, in [-16, 16]. These are the
+// 99th percentile of the pixels' largest channels; black pixels do not count. 0 for a black image.
 RELUME_API double relume_tone_meter_bright(const struct relume_image *image);
-// What `--exposure auto` takes: the first for curves that bend highlights, the second for linear.
+// Returns the second for the linear curve, the first for curves that bend highlights.
 RELUME_API double relume_tone_meter_for(const struct relume_image *image,
                                         const struct relume_tone *tone);
 

@@ -2,7 +2,7 @@
 //
 // Between two neighbouring pixels of a flat surface the ratio of brightness is the same under all
 // lights, whatever is painted on it. On a relief it changes with the light. The median over the
-// lights leaves out shadows on the table, which reach a place under few of them.
+// lights leaves out shadows on the table, which reach a pixel under few of them.
 #include "capture/acquire/acquire.h"
 
 #include "core/base/log.h"
@@ -13,14 +13,14 @@
 #include <math.h>
 #include <string.h>
 
-static const double FAINT = 0.02;      // of the bright places: noise in the dark is no relief
-static const double LEAST = 0.015;     // change of the logarithm from pixel to pixel; light that
-                                       // falls off over a flat board reaches 0.01
-static const double RELIEF = 0.15;     // of the strongest relief
-static const double SHARE = 0.03;      // of all relief: what has less is dust or a reflection
-static const double MARGIN = 0.03;     // of the object's longer side
-static const double BALL = 1.3;        // radii: the rim and what the ball reflects onto the table
-static const double ALL = 0.9;         // of the picture: the object fills it
+static const double FAINT = 0.02;   // of the bright parts: noise in the dark is no relief
+static const double LEAST = 0.015;  // change of the logarithm from pixel to pixel; light that
+                                    // falls off over a flat board reaches 0.01
+static const double RELIEF = 0.15;  // of the strongest relief
+static const double SHARE = 0.03;   // of all relief: what has less is dust or a reflection
+static const double MARGIN = 0.03;  // of the object's longer side
+static const double BALL = 1.3;     // radii: the rim and what the ball reflects onto the table
+static const double ALL = 0.9;      // of the picture: the object fills it
 enum { BLUR = 2, LEAST_SIDE = 8 };
 
 struct map {
@@ -70,7 +70,7 @@ static double middle(double *value, int n)
     return value[n / 2];
 }
 
-// How the step from pixel `at` to `next` differs from light to light.
+// Returns the change of the step from pixel `at` to `next` between lights.
 static float change(const float *log, size_t pixels, int shots, size_t at, size_t next,
                     double *step)
 {
@@ -213,13 +213,13 @@ static relume_status find_object(struct region *out, struct map *m)
     return status;
 }
 
-// In pixels of the photographs, with a margin; width 0 where there is nothing to crop.
+// In pixels of the photographs, with a margin; width 0: all.
 static void place_object(int crop[4], const struct acquisition *s, const struct map *m,
                          const struct region *r)
 {
     const double step = (double)(s->width / m->width);
-    const int side = r->right - r->left > r->bottom - r->top ? r->right - r->left
-                                                            : r->bottom - r->top;
+    const int side =
+        r->right - r->left > r->bottom - r->top ? r->right - r->left : r->bottom - r->top;
     const double margin = MARGIN * side * step;
     const double from[2] = {r->left * step, r->top * step};
     const double to[2] = {fmin(r->right * step, s->width), fmin(r->bottom * step, s->height)};
@@ -278,8 +278,8 @@ relume_status acquire_crop_image(struct relume_image *image, const int crop[4])
     const relume_status status = relume_image_create(&part, crop[2], crop[3], image->channels);
     for (int y = 0; !status && y < crop[3]; y++)
         memcpy(part.data + channels * (size_t)y * (size_t)crop[2],
-               image->data + channels * ((size_t)(crop[1] + y) * (size_t)image->width +
-                                         (size_t)crop[0]),
+               image->data +
+                   channels * ((size_t)(crop[1] + y) * (size_t)image->width + (size_t)crop[0]),
                channels * (size_t)crop[2] * sizeof *part.data);
     if (!status) {
         relume_image_destroy(image);

@@ -51,7 +51,7 @@ static relume_status save_normals(const struct acquisition *s)
     return status;
 }
 
-// Formats of integers get 16 bits, from the lowest place to the highest.
+// Formats of integers get 16 bits, from the lowest height to the greatest.
 static relume_status save_heights(const struct acquisition *s, const struct relume_image *height)
 {
     const struct relume_image *normal = &s->out->photometric.normal;

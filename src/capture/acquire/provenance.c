@@ -142,8 +142,9 @@ static relume_status name_twin(struct acquisition *s, int i)
 {
     for (int k = 0; k < i; k++)
         if (!strcmp(s->shot[k].sha256, s->shot[i].sha256))
-            return acquire_warn(s, "%s and %s are the same photograph, byte for byte; one of the "
-                                   "two lights has a wrong picture",
+            return acquire_warn(s,
+                                "%s and %s are the same photograph, byte for byte; one of the "
+                                "two lights has a wrong picture",
                                 s->shot[k].path, s->shot[i].path);
     return RELUME_OK;
 }

@@ -24,7 +24,7 @@ struct relight_options {
     const struct relume_transport *transport;  // NULL: none
     int bounces, spacing, cameras;
     bool nearest, alpha, allow_outside, keep_going, every_light, force;
-    int format;  // of the pictures of every light: a place in `formats`
+    int format;  // of the pictures of every light: an index of `formats`
     struct light_options lighting;
     struct develop_options develop;
     struct eye_options glare;
@@ -465,7 +465,7 @@ static void describe_low_light(char text[160], const struct relight_options *o,
 static void note_darkness(const struct relume_image *frame, const struct relight_options *o,
                           const struct relume_pack_info *info, const char *path)
 {
-    static const double bright = 0.9, dark = 0.1;  // relume_tone_meter_bright; of white
+    static const double bright = 0.9, dark = 0.1;  // relume_tone_meter_bright, white
     char low[160];
     const double ev = relume_tone_meter_bright(frame);
     const double top = bright * exp2(-ev);
@@ -506,8 +506,8 @@ static relume_status draw_picture(relume_renderer *renderer, const relume_object
 }
 
 static relume_status draw_light(relume_renderer *renderer, const relume_objects *objects,
-                                const struct relight_options *o,
-                                const struct relume_camera *camera, const char *folder, int i)
+                                const struct relight_options *o, const struct relume_camera *camera,
+                                const char *folder, int i)
 {
     const relume_coder *coder = relume_pack_info(relume_renderer_pack(renderer))->coder;
     const struct relume_coder_info *info = relume_coder_info(coder);

@@ -1,8 +1,8 @@
 // film_frames.c - photographs out of a film in which a lamp moves
 //
 // ffmpeg reads the film twice. First all frames pass by, small and grey. Frames that are much less
-// sharp than those around them, or much darker than most, do not count. Of the others those are
-// taken that differ most from all that are taken already (farthest-first traversal, Gonzalez 1985).
+// sharp than those around them, or much darker than most, do not count. Frames are taken
+// that differ most from all that are taken already (farthest-first traversal, Gonzalez 1985).
 // Then ffmpeg writes these in full size.
 #include "cli/commands/film_frames.h"
 
@@ -21,14 +21,14 @@
 
 enum { WIDTH = 320, HEIGHT = 240, STEP = 8, SMALL = (WIDTH / STEP) * (HEIGHT / STEP) };
 enum { MOST_READ = 20000, AROUND = 7, PATH = 4096 };
-static const double LEAST_SHARP = 0.7;  // of the median of the frames around
-static const double LEAST_BRIGHT = 0.2;  // of the median of all frames
+static const double LEAST_SHARP = 0.7;       // of the median of the frames around
+static const double LEAST_BRIGHT = 0.2;      // of the median of all frames
 static const double LEAST_DIFFERENT = 0.04;  // RMS, of the mean brightness; noise has 0.01
 
 struct frame {
     float small[SMALL];  // over its mean
     float mean;
-    float sharp;  // fine detail over coarse, which hardly depends on the light
+    float sharp;    // fine detail over coarse, which hardly depends on the light
     float nearest;  // distance to the frames that are taken
     bool taken;
 };
@@ -58,11 +58,11 @@ static pid_t start_ffmpeg(const struct reading *r, const char *filter, const cha
     char from[PATH + 8];
     int ends[2] = {-1, -1};
     snprintf(from, sizeof from, "file:%.4000s", r->path);
-    const char *const raw[] = {"ffmpeg",    "-nostdin", "-v",     "error",
-                               "-protocol_whitelist", "file,pipe", "-i",     from,
-                               "-an",       "-vsync",   "0",      "-vf",
-                               filter,      "-f",       output ? "rawvideo" : "image2",
-                               to,          NULL};
+    const char *const raw[] = {
+        "ffmpeg",    "-nostdin", "-v",   "error", "-protocol_whitelist",
+        "file,pipe", "-i",       from,   "-an",   "-vsync",
+        "0",         "-vf",      filter, "-f",    output ? "rawvideo" : "image2",
+        to,          NULL};
     if (output && pipe2(ends, O_CLOEXEC))
         return -1;
     const pid_t child = fork();
@@ -106,8 +106,7 @@ static double detail(const unsigned char *grey, int far)
     for (int y = far; y < HEIGHT - far; y++)
         for (int x = far; x < WIDTH - far; x++) {
             const unsigned char *at = grey + y * WIDTH + x;
-            const int curve =
-                4 * at[0] - at[-far] - at[far] - at[-far * WIDTH] - at[far * WIDTH];
+            const int curve = 4 * at[0] - at[-far] - at[far] - at[-far * WIDTH] - at[far * WIDTH];
             sum += (double)curve * curve;
         }
     return sum;
@@ -261,27 +260,32 @@ static int choose(int *chosen, int most, struct reading *r)
 
 // ---------------------------------------------------------------- chosen frames
 
+// Fills `out` with the film's name without its ending, as ffmpeg's pattern of names may hold it.
+static void plain_stem(char out[100], const char *path)
+{
+    const char *name = path_name(path);
+    snprintf(out, 100, "%.*s", (int)(strlen(name) - strlen(name_ending(name))), name);
+    for (char *at = out; *at; at++)
+        *at = *at == '%' ? '_' : *at;
+}
+
 static relume_status write_chosen(struct film_frames *out, const struct reading *r,
                                   const int *chosen, int count)
 {
     enum { TERM = 24 };
-    char to[PATH + 32], filter[16 + TERM * FILM_FRAMES_MOST] = "select=";
+    char stem[100], to[PATH + 128], filter[16 + TERM * FILM_FRAMES_MOST] = "select=";
+    const char *folder = relume_making_path(out->folder);
     size_t n = strlen(filter);
-    const char *name = path_name(r->path);
-    const int stem = (int)(strlen(name) - strlen(name_ending(name)));
     for (int i = 0; i < count; i++)
         n += (size_t)snprintf(filter + n, TERM, "%seq(n\\,%d)", i ? "+" : "", chosen[i]);
-    snprintf(to, sizeof to, "file:%.4000s/%%05d.png", relume_making_path(out->folder));
-    relume_status status = end_ffmpeg(r, start_ffmpeg(r, filter, to, NULL));
+    plain_stem(stem, r->path);
+    snprintf(to, sizeof to, "file:%.4000s/%s-%%04d.png", folder, stem);
+    const relume_status status = end_ffmpeg(r, start_ffmpeg(r, filter, to, NULL));
     for (int i = 0; !status && i < count; i++) {
-        char from[PATH + 32];
-        snprintf(from, sizeof from, "%.4000s/%05d.png", relume_making_path(out->folder), i + 1);
-        snprintf(to, sizeof to, "%.3900s/%.*s-%06d.png", relume_making_path(out->folder),
-                 stem < 100 ? stem : 100, name, chosen[i]);
-        out->path[i] = rename(from, to) ? NULL : strdup(to);
+        snprintf(to, sizeof to, "%.4000s/%s-%04d.png", folder, stem, i + 1);
+        out->path[i] = strdup(to);
         if (!out->path[i])
-            return say(r->log, RELUME_EUNFIT, "%s: ffmpeg did not write frame %d", r->path,
-                       chosen[i]);
+            return RELUME_ENOMEM;
         out->count++;
     }
     return status;

@@ -18,7 +18,7 @@ struct film_frames {
 bool film_frames_named(const char *path);
 // Reads a film by ffmpeg and keeps at most `most` frames, from 3 to FILM_FRAMES_MOST: sharp ones
 // under the lights that differ most. RELUME_EUNFIT (a film that cannot be read, or shows fewer than
-// 3 lights), RELUME_ESYSTEM (no ffmpeg), RELUME_EIO, RELUME_ENOMEM, each with a sentence.
+// 3 lights), RELUME_ESYSTEM (no ffmpeg), RELUME_EIO, RELUME_ENOMEM.
 relume_status film_frames_open(struct film_frames *out, const char *path, int most,
                                const struct relume_log *log);
 void film_frames_close(struct film_frames *frames);

@@ -8,9 +8,9 @@
 #include <relume/image.h>
 #include <stddef.h>
 
-// OPTION_OUTPUT and those behind it are text that names what is written; OPTION_TEXT, OPTION_TEXTS,
-// OPTION_FILES and inputs that name a file or folder are taken as read: no output replaces it. OPTION_PROSE
-// names none.
+// OPTION_OUTPUT and those behind it are text that names what is written; Inputs and
+// OPTION_TEXT, OPTION_TEXTS and OPTION_FILES that name a file or folder are taken as read: no
+// output replaces it. OPTION_PROSE names none.
 enum option_kind {
     OPTION_GROUP,    // no option: the heading of the rows that follow
     OPTION_FLAG,     // bool

@@ -487,8 +487,8 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
                         ".hdr, ...",
                         path);
     if (p.bits == 16 && !picture_writes_words(path))
-        return log_fail(p.log, RELUME_EINVAL, "%s: no 16 bits in this format; expected .png or .tif",
-                        path);
+        return log_fail(p.log, RELUME_EINVAL,
+                        "%s: no 16 bits in this format; expected .png or .tif", path);
     if (picture_has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
     if (picture_writes_floats(path))

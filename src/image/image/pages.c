@@ -20,7 +20,7 @@ static uint64_t whole_at(const uint8_t *at, int bytes, bool big)
     return v;
 }
 
-// Directories follow each other (TIFF 6.0; BigTIFF): so many entries, then where the next one is;
+// Directories follow each other (TIFF 6.0; BigTIFF): so many entries, then where the next one is.
 // -1 where one lies beyond the end of the file. Readers of pictures take that for the last one.
 int tiff_pages(struct infile *in)
 {

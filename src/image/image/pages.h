@@ -12,8 +12,8 @@ int tiff_pages(struct infile *in);
 int picture_pages(const char *path, const struct relume_log *log);
 
 enum { PAGE_PATH = 4096 };
-// Splits the name of a page, from 1: returns the page with its file in `file`, or 0 with `path`,
-// where a file of that name is there or no page is named.
+// Splits the name of a page: returns its number, from 1, and its file in `file`. Returns 0 and
+// `path` where no page is named, or a file has this name.
 int page_of(char file[PAGE_PATH], const char *path);
 // Opens a picture or the page of one, as picture_open does.
 relume_status page_open(picture_reader **out, const char *path, const struct relume_limits *limits,

@@ -13,7 +13,7 @@ relume_status photograph_notes(struct relume_exif *out, const char *path,
 void photograph_turn_vector(double xy[2], int orientation);
 
 // Refuses a folder of tiles that WebRTIMaker wrote, which look like photographs.
-// RELUME_EUNSUPPORTED with a sentence, RELUME_ENOMEM.
+// RELUME_EUNSUPPORTED, RELUME_ENOMEM.
 relume_status photographs_refuse_tiles(const char *folder, const struct relume_log *log);
 
 #endif

@@ -300,8 +300,7 @@ static relume_status refuse_for_below(const struct gathering *g, const char *fol
     return log_fail(p->log, RELUME_ENOTFOUND,
                     "%s: %s; folders below have %s: %s%s; %s %s%s%s%s%s%s", folder, here,
                     count ? "more" : "some", b->names, more, p->command ? p->command : "give", q,
-                    b->folder, q, *lights ? " --lights " : "", lights,
-                    p->command ? " -o DIR" : "");
+                    b->folder, q, *lights ? " --lights " : "", lights, p->command ? " -o DIR" : "");
 }
 
 // Some that only have names of masks and normals are none here either.

@@ -328,7 +328,8 @@ relume_status picture_write_bytes(const char *path, const struct relume_writer *
                                   const struct relume_log *log)
 {
     const struct picture_codes codes = {
-        .array = {.data = samples, .bytes = 1, .width = width, .height = height, .channels = channels}};
+        .array = {
+            .data = samples, .bytes = 1, .width = width, .height = height, .channels = channels}};
     return picture_write_codes(path, writer, &codes, log);
 }
 

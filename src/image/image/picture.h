@@ -80,7 +80,7 @@ struct picture_codes {
     const void *profile;  // ICC, which formats without one leave out; NULL: none
     size_t profile_size;
 };
-// The same of these; of 2 bytes where picture_writes_words.
+// Writes these likewise. picture_writes_words names the formats of 2 bytes.
 bool picture_writes_words(const char *path);
 relume_status picture_write_codes(const char *path, const struct relume_writer *writer,
                                   const struct picture_codes *codes, const struct relume_log *log);

@@ -1,4 +1,5 @@
-// png.c - the one file that knows libpng: grey or colour, perhaps with alpha; reads 8 bits, writes 16
+// png.c - the one file that knows libpng: grey or colour, perhaps with alpha; reads 8 bits, writes
+// 16
 #include "core/base/infile.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -236,8 +237,7 @@ static bool encode(struct writer *w, const struct picture_codes *codes)
     if (setjmp(w->trap.jump))
         return false;
     png_set_write_fn(w->png, w, append, no_flush);
-    png_set_IHDR(w->png, w->info, (png_uint_32)a->width, (png_uint_32)a->height,
-                 8 * (int)a->bytes,
+    png_set_IHDR(w->png, w->info, (png_uint_32)a->width, (png_uint_32)a->height, 8 * (int)a->bytes,
                  a->channels == 4   ? PNG_COLOR_TYPE_RGB_ALPHA
                  : a->channels == 3 ? PNG_COLOR_TYPE_RGB
                                     : PNG_COLOR_TYPE_GRAY,

@@ -95,7 +95,7 @@ static const double unseen_ev = 11.7;
 static const double most_ev = 16.0;
 static const double bright_part = 0.99, bright_value = 0.9;
 
-// The bin of a value; -1 where it has none.
+// Returns the bin of a value, -1 outside all.
 static int bin_at(float value)
 {
     const double place = ((double)log2f(value) + RANGE_EV) * PER_EV;

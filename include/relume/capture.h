@@ -29,7 +29,11 @@ struct relume_manifest {
     const struct relume_vec3 *directions;  // [lights], unit
     const struct relume_vec3 *positions;   // [lights], world units, or NULL: distant lights
     bool no_falloff;  // positions: light does not fall with the square of the distance
-    const float (*intensities)[3];  // [lights], or NULL: all 1
+    // Brightness of lights; NULL: all 1. For positions with falloff it is the power of lamps; a
+    // lamp at the root mean square of all distances from 0, 0, 0 shows its value there.
+    const float (*intensities)[3];  // [lights]
+    bool intensities_at_origin;     // positions: what each lamp shows at 0, 0, 0, not its power;
+                                    // relume_capture_manifest states them so
     int views;
     const struct relume_manifest_view *view;  // [views]
     const char *provenance;  // where the photographs come from, a JSON object (docs/format.md), or

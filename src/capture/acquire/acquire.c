@@ -246,6 +246,23 @@ static double mean_miss(const struct relume_photometric *p)
     return sum;
 }
 
+// A photograph that misses less than half as much by one factor shows a lamp of another power.
+static relume_status name_outlier(struct acquisition *s, int i, double usual)
+{
+    const struct relume_photometric *p = &s->out->photometric;
+    const double miss = p->light_residual[i], gain = p->light_gain[i];
+    if (p->mended_residual[i] > 0.5 * miss)
+        return acquire_warn_alike(
+            s, ALIKE_MISFIT, miss,
+            "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
+            "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
+            s->shot[i].path, 100.0 * miss, 100.0 * usual);
+    return acquire_warn_alike(
+        s, ALIKE_POWER, miss,
+        "lamp %d (%s) is %.0f %% %s than expected; --refine-brightness measures each lamp", i + 1,
+        path_name(s->shot[i].path), 100.0 * fabs(gain - 1.0), gain < 1.0 ? "dimmer" : "brighter");
+}
+
 // Photographs that miss far more than most: damaged in a way that no reader sees, taken when
 // something had moved, or under a lamp that is not as it is said to be.
 static relume_status name_outliers(struct acquisition *s)
@@ -260,11 +277,7 @@ static relume_status name_outliers(struct acquisition *s)
     for (int i = 0; i < p->lights && !status; i++) {
         s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
         if (s->out->photo[i].outlier)
-            status = acquire_warn_alike(
-                s, ALIKE_MISFIT, p->light_residual[i],
-                "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
-                "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
-                s->shot[i].path, 100.0 * p->light_residual[i], 100.0 * usual);
+            status = name_outlier(s, i, usual);
     }
     mem_free(sorted);
     return status;
@@ -446,9 +459,10 @@ static relume_status check_inputs(const struct acquisition *s)
         return log_fail(
             p->log, RELUME_EINVAL,
             "--white: the matte ball shows the lamps' colour already; leave out --white");
-    if (acquire_refines(s) && p->near)
+    if (p->refine_lights && p->near)
         return log_fail(p->log, RELUME_EINVAL,
-                        "near lights cannot be refined; expected distant ones");
+                        "--refine-lights: the directions of near lights cannot be refined; "
+                        "--refine-brightness finds the power of each lamp");
     return RELUME_OK;
 }
 

@@ -361,6 +361,21 @@ static relume_status locate(struct acquisition *s, int i, const struct ball_ligh
     return RELUME_OK;
 }
 
+// Converts the brightness that a matte ball shows to power (relume_manifest.intensities).
+static void find_power(struct acquisition *s)
+{
+    vec3 middle;
+    double square = 0.0;
+    (void)place_ball(s, &s->out->ball[0], &middle);
+    for (int i = 0; i < s->shots; i++)
+        square += vec3_dot(s->shot[i].position, s->shot[i].position) / s->shots;
+    for (int i = 0; i < s->shots; i++) {
+        const vec3 apart = vec3_sub(s->shot[i].position, middle);
+        for (int c = 0; c < 3; c++)
+            s->shot[i].intensity[c] *= (float)(vec3_dot(apart, apart) / square);
+    }
+}
+
 // A mirror's outline that is too small turns lights away from the axis of view, some behind the
 // ball: a mirror on a table shows the table's horizon as a circle, 0.71 of its outline.
 static relume_status warn_below(struct acquisition *s)
@@ -477,6 +492,8 @@ static relume_status locate_all(struct acquisition *s, const struct relume_ball_
         else if (!status)
             status = locate(s, i++, &seen, &disagree);
     }
+    if (!status && s->p.near && s->p.matte)
+        find_power(s);
     if (!status)
         status = warn_below(s);
     if (!status && !s->p.near && disagree > DISAGREE)

@@ -230,7 +230,11 @@ relume_status capture_finish(relume_capture **out, relume_capture *c,
     c->scratch = p->scratch ? arena_format(&c->draft.arena, "%s", p->scratch) : NULL;
     c->limits = limits_or_default(p->limits);
     c->context = context_of(p->log);
-    const relume_status status = p->scratch && !c->scratch ? RELUME_ENOMEM : finish(c, p);
+    relume_status status = p->scratch && !c->scratch ? RELUME_ENOMEM : RELUME_OK;
+    if (!status)
+        status = draft_state_at_origin(&c->draft);
+    if (!status)
+        status = finish(c, p);
     if (status)
         relume_capture_destroy(&c);
     *out = c;

@@ -85,6 +85,7 @@ static relume_status alloc_result(struct acquisition *s)
 static relume_status fill_result(struct acquisition *s)
 {
     struct relume_acquisition *out = s->out;
+    double squares = 0.0;
     out->width = s->width;
     out->height = s->height;
     const relume_status status = alloc_result(s);
@@ -102,7 +103,8 @@ static relume_status fill_result(struct acquisition *s)
         };
         if (!out->photo[i].path)
             return RELUME_ENOMEM;
-        out->direction_error_deg += from->sigma_deg / s->shots;
+        squares += from->sigma_deg * from->sigma_deg / s->shots;
+        out->direction_error_deg = sqrt(squares);
         out->direction[i] = s->p.near ? vec3_unit(from->position) : from->direction;
         if (out->position) {
             out->position[i] = from->position;
@@ -246,12 +248,13 @@ static double mean_miss(const struct relume_photometric *p)
     return sum;
 }
 
-// A photograph that misses less than half as much by one factor shows a lamp of another power.
+// A photograph that misses less than half as much by one factor shows a lamp of another power; a
+// large factor is more likely a wrong direction.
 static relume_status name_outlier(struct acquisition *s, int i, double usual)
 {
     const struct relume_photometric *p = &s->out->photometric;
     const double miss = p->light_residual[i], gain = p->light_gain[i];
-    if (p->mended_residual[i] > 0.5 * miss)
+    if (p->mended_residual[i] > 0.5 * miss || gain < 0.5 || gain > 2.0)
         return acquire_warn_alike(
             s, ALIKE_MISFIT, miss,
             "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
@@ -419,6 +422,8 @@ static const char *find_conflict(const struct relume_acquire_params *p)
     if (p->ball_transfer.curve != RELUME_CURVE_AUTO && !p->ball_photograph_count)
         return "--ball-transfer needs --ball-photos; for the photographs themselves use "
                "--transfer";
+    if (p->near && p->distant)
+        return "expected one of --near and --distant";
     if (p->integrable && !p->refine_lights)
         return "--integrable needs --refine-lights";
     if (p->radial && !p->flat_count)

@@ -8,6 +8,8 @@ enum { BUMP_SIDE = 40, BUMP_LIGHTS = 14 };
 
 struct bump {
     bool near;     // lights at 3 world units, falling with the square of the distance
+    bool uneven;   // lamps of equal power at 2.2 to 3.8 units instead
+    bool level;    // photographs are equally bright at 0, 0, 0
     bool flat;     // a plane instead of the bump
     double gloss;  // height of a highlight at each pixel under one light
     double shine;  // strength of a highlight around the mirror direction, seen from above
@@ -21,6 +23,25 @@ static inline struct relume_vec3 bump_light(int i)
 {
     const double z = 0.45 + 0.5 * (i + 0.5) / BUMP_LIGHTS, r = sqrt(1.0 - z * z);
     return (struct relume_vec3){r * cos(2.4 * i), r * sin(2.4 * i), z};
+}
+
+static inline double bump_distance(const struct bump *s, int i)
+{
+    return s->uneven ? 2.2 + 1.6 * (5 * i % BUMP_LIGHTS) / (BUMP_LIGHTS - 1.0) : 3.0;
+}
+
+static inline struct relume_vec3 bump_position(const struct bump *s, int i)
+{
+    return vec3_scale(bump_light(i), bump_distance(s, i));
+}
+
+// Light of a lamp of power 1 at the distance 1 (docs/conventions.md).
+static inline double bump_power(const struct bump *s, int light)
+{
+    double sum = 0.0;
+    for (int i = 0; i < BUMP_LIGHTS; i++)
+        sum += pow(bump_distance(s, s->level ? light : i), 2.0) / BUMP_LIGHTS;
+    return sum;
 }
 
 // Pixel centres as the default window has them, on z = 0.
@@ -53,8 +74,8 @@ static inline double bump_value(const struct bump *s, int light, int x, int y)
     struct relume_vec3 l = d;
     double fall = s->brightness ? s->brightness[light] : 1.0;
     if (s->near) {
-        l = (struct relume_vec3){3.0 * d.x - p.x, 3.0 * d.y - p.y, 3.0 * d.z - p.z};
-        fall *= s->no_falloff ? 1.0 : 9.0 / vec3_dot(l, l);
+        l = vec3_sub(bump_position(s, light), p);
+        fall *= s->no_falloff ? 1.0 : bump_power(s, light) / vec3_dot(l, l);
         l = vec3_unit(l);
     }
     const int odd = (7 * x + 13 * y) % BUMP_LIGHTS;
@@ -75,8 +96,8 @@ static inline void bump_write(const struct bump *s, const char *folder)
     struct relume_image image;
     CHECK_OK(relume_image_create(&image, BUMP_SIDE, BUMP_SIDE, 3));
     for (int i = 0; i < BUMP_LIGHTS; i++) {
-        const struct relume_vec3 d = direction[i] = bump_light(i);
-        position[i] = (struct relume_vec3){3.0 * d.x, 3.0 * d.y, 3.0 * d.z};
+        direction[i] = bump_light(i);
+        position[i] = bump_position(s, i);
         for (int k = 0; k < BUMP_SIDE * BUMP_SIDE; k++)
             for (int c = 0; c < 3; c++)
                 image.data[3 * k + c] = (float)bump_value(s, i, k % BUMP_SIDE, k / BUMP_SIDE);
@@ -92,6 +113,7 @@ static inline void bump_write(const struct bump *s, const char *folder)
         .directions = direction,
         .positions = s->near ? position : NULL,
         .no_falloff = s->no_falloff,
+        .intensities_at_origin = s->level,
         .views = 1,
         .view = &view,
     };

@@ -31,7 +31,11 @@ struct relume_manifest {
     bool no_falloff;     // positions: light does not fall with the square of the distance
     bool display_coded;  // the images were made of photographs that hold display values, of which 1
                          // is white, though they may hold linear light by now
-    const float (*intensities)[3];  // [lights], or NULL: all 1
+    // Brightness of lights; NULL: all 1. For positions with falloff it is the power of lamps; a
+    // lamp at the root mean square of all distances from 0, 0, 0 shows its value there.
+    const float (*intensities)[3];  // [lights]
+    bool intensities_at_origin;     // positions: what each lamp shows at 0, 0, 0, not its power;
+                                    // relume_capture_manifest states them so
     int views;
     const struct relume_manifest_view *view;  // [views]
     const char *provenance;  // where the photographs come from, a JSON object (docs/format.md), or

@@ -51,7 +51,7 @@ struct relume_geometry { int projection; double window_min[2], window_max[2]; bo
 struct relume_manifest_view { double uv[2]; int slab; void *images; void *depth; void *mask; };
 struct relume_manifest { struct relume_transfer transfer; struct relume_geometry geometry;
     int slabs; void *slab; int lights; void *directions; void *positions; bool no_falloff;
-    bool display_coded; void *intensities; int views; void *view; char *provenance; };
+    bool display_coded; void *intensities; bool intensities_at_origin; int views; void *view; char *provenance; };
 struct relume_pictures { int sample; int width, height; int channels; void *data; void *depth;
     void *mask; };
 struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;

@@ -67,6 +67,43 @@ static void check_positions(double fov_deg, double tolerance)
     test_folder_remove(p.folder);
 }
 
+// Without options all balls are found, and they decide whether lamps are near.
+static void check_found(struct made_scene s, bool distant, bool near)
+{
+    struct photographs p;
+    struct relume_acquisition acquisition;
+    struct relume_acquire_params params = {.distant = distant};
+    photograph(&p, s, s.distant ? 1.0 : 3.0, -1);
+    CHECK_OK(relume_capture_photographs(p.out, p.list, LAMPS, &params, &acquisition));
+    assert_int_equal(acquisition.balls, 3);
+    assert_true((acquisition.position != NULL) == near);
+    if (near) {
+        double squares = 0.0;
+        for (int i = 0; i < LAMPS; i++) {
+            const struct relume_vec3 off = vec3_sub(acquisition.position[i], lamp_at(i, 3.0));
+            squares += vec3_dot(off, off) / LAMPS;
+        }
+        CHECK_NEAR(sqrt(squares) / 3.0, 0.0, 0.02);
+    }
+    relume_acquisition_destroy(&acquisition);
+    test_folder_remove(p.folder);
+}
+
+static void balls_decide_near(void **state)
+{
+    (void)state;
+    struct made_scene s = {.balls = 3,
+                           .middle = {{-0.65, -0.35, 0}, {0.0, 0.38, 0}, {0.65, -0.3, 0}},
+                           .radius = {0.26, 0.26, 0.26},
+                           .brightness = 4.0};
+    check_found(s, false, true);
+    if (TEST_SANITIZED)
+        return;
+    check_found(s, true, false);
+    s.distant = true;
+    check_found(s, false, false);
+}
+
 // The target is 2 %; balls of 42 pixels are less than half of what the guide recommends.
 static void positions_orthographic(void **state)
 {
@@ -505,19 +542,13 @@ static void a_camera_on_the_lamp(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_folder_of_photographs),
-        cmocka_unit_test(members_that_disagree),
-        cmocka_unit_test(light_is_evened_out),
-        cmocka_unit_test(a_camera_on_the_lamp),
-        cmocka_unit_test(positions_orthographic),
-        cmocka_unit_test(positions_perspective),
-        cmocka_unit_test(a_dark_photograph),
-        cmocka_unit_test(mostly_dark_photographs),
-        cmocka_unit_test(a_reflection_that_never_moves),
-        cmocka_unit_test(a_round_stone_is_no_ball),
-        cmocka_unit_test(an_outline_too_small),
-        cmocka_unit_test(a_mirror_on_a_table),
-        cmocka_unit_test(a_matte_ball_on_a_table),
+        cmocka_unit_test(a_folder_of_photographs),  cmocka_unit_test(members_that_disagree),
+        cmocka_unit_test(light_is_evened_out),      cmocka_unit_test(a_camera_on_the_lamp),
+        cmocka_unit_test(positions_orthographic),   cmocka_unit_test(balls_decide_near),
+        cmocka_unit_test(positions_perspective),    cmocka_unit_test(a_dark_photograph),
+        cmocka_unit_test(mostly_dark_photographs),  cmocka_unit_test(a_reflection_that_never_moves),
+        cmocka_unit_test(a_round_stone_is_no_ball), cmocka_unit_test(an_outline_too_small),
+        cmocka_unit_test(a_mirror_on_a_table),      cmocka_unit_test(a_matte_ball_on_a_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

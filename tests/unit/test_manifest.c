@@ -38,6 +38,7 @@ static void test_round_trip(void **state)
                                     .directions = directions,
                                     .positions = p % 2 ? positions : NULL,
                                     .intensities = p > 1 ? intensities : NULL,
+                                    .intensities_at_origin = p % 2 != 0,
                                     .views = 1,
                                     .view = &view};
         m.geometry.perspective = true;
@@ -64,6 +65,7 @@ static void test_round_trip(void **state)
             assert_string_equal(d.m.view[0].images[i], want);
         }
         assert_true((d.m.positions != NULL) == p % 2 && (d.m.intensities != NULL) == (p > 1));
+        assert_true(d.m.intensities_at_origin == (p % 2 != 0));
         assert_true((d.m.view[0].mask != NULL) == (p > 0));
         assert_non_null(d.m.view[0].depth);
         const struct relume_geometry *g = &d.m.geometry;
@@ -138,6 +140,7 @@ static void test_bad(void **state)
     expect("\"version\": 1, ", "", "", "", "JSON");
     expect("", ", \"positions\": [[0,0,1]]", "", "", "as many positions");
     expect("", ", \"positions\": [[0,0,1],[0,0,\"x\"]]", "", "", "positions[1]");
+    expect("", ", \"intensities_at\": \"sun\"", "", "", "intensities_at; expected lamp or origin");
     expect("", ", \"intensities\": [[1,1,1]]", "", "", "intensities");
     expect("", ", \"intensities\": [[1,1,1],[0,1,1]]", "", "", "intensities");
     expect("", ", \"intensities\": [[1,1,1],[1,-1,1]]", "", "", "intensities");

@@ -60,6 +60,19 @@ static void near_lights(void **state)
     CHECK_NEAR(fit(&(struct bump){.near = true, .no_falloff = true}, false), 0.0, 0.05);
 }
 
+// A bulb carried around, near and far: each photograph is as bright as it makes it. Photographs
+// that were made equally bright say so.
+static void lamps_at_unequal_distances(void **state)
+{
+    (void)state;
+    const struct bump bulb = {.near = true, .uneven = true};
+    const struct bump levelled = {.near = true, .uneven = true, .level = true};
+    CHECK_NEAR(fit(&bulb, true), 0.0, 0.05);
+    CHECK_NEAR(fit(&levelled, true), 0.0, 0.05);
+    if (!TEST_SANITIZED)
+        CHECK_NEAR(fit(&bulb, false), 0.0, 0.05);
+}
+
 static void too_few_lights(void **state)
 {
     (void)state;
@@ -339,6 +352,37 @@ static void refined_brightness(void **state)
     }
 }
 
+// The power of near lights, of a bump and of a plate, and which of them differs from the others.
+static void refined_power_of_near_lamps(void **state)
+{
+    (void)state;
+    double brightness[BUMP_LIGHTS], residual[2], found[BUMP_LIGHTS];
+    for (int i = 0; i < BUMP_LIGHTS; i++)
+        brightness[i] = i == 5 ? 0.7 : 1.0;
+    for (int flat = TEST_SANITIZED ? 1 : 0; flat < 2; flat++) {
+        char folder[64];
+        const struct bump s = {.near = true,
+                               .uneven = true,
+                               .flat = flat,
+                               .brightness = brightness,
+                               .normal_of_plane = {0.1, 0, 1}};
+        relume_capture *capture = bump_open(&s, folder);
+        struct relume_vec3 direction[BUMP_LIGHTS];
+        struct relume_photometric p;
+        CHECK_OK(relume_acquire_refine(direction, found, residual, capture,
+                                       &(struct relume_acquire_refine_params){.brightness = true}));
+        const double mean = 1.0 - 0.3 / BUMP_LIGHTS;
+        for (int i = 0; i < BUMP_LIGHTS; i++)
+            CHECK_NEAR(found[i], brightness[i] / mean, 0.005);
+        CHECK_OK(relume_photometric_fit(&p, capture, 0, NULL));
+        CHECK_NEAR(p.light_gain[5], 0.7, 0.02);
+        CHECK_NEAR(p.light_gain[6], 1.0, 0.02);
+        assert_true(p.mended_residual[5] < 0.1 * p.light_residual[5]);
+        relume_photometric_destroy(&p);
+        bump_close(&capture, folder);
+    }
+}
+
 enum common_error { TURNED, TILTED, STRETCHED, EACH };
 
 static struct relume_vec3 mistaken(enum common_error e, int i)
@@ -425,6 +469,7 @@ int main(void)
         cmocka_unit_test(exact_without_outliers),
         cmocka_unit_test(outliers_are_left_out),
         cmocka_unit_test(near_lights),
+        cmocka_unit_test(lamps_at_unequal_distances),
         cmocka_unit_test(too_few_lights),
         cmocka_unit_test(height_of_the_bump),
         cmocka_unit_test(steps_are_kept),
@@ -433,6 +478,7 @@ int main(void)
         cmocka_unit_test(cosine_transform),
         cmocka_unit_test(refined_lights),
         cmocka_unit_test(refined_brightness),
+        cmocka_unit_test(refined_power_of_near_lamps),
         cmocka_unit_test(integrable_lights),
         cmocka_unit_test(undetermined_lights_stay),
     };

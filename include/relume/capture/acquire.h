@@ -38,7 +38,9 @@ struct relume_acquire_params {
     const char *lights;
     bool near;                // positions: from two balls or more, or from `lights`
     const double (*ball)[3];  // [balls]: x, y, radius of the outlines, pixels; default: found
-    int balls;                // at most 16; default 1
+    int balls;                // at most 16; default: all mirror balls, one matte ball
+    bool distant;             // directions, even where two balls show that lamps are near; default:
+                              // positions there
     bool matte;               // matte white balls; default mirrors
     const char *ball_mask;    // white where the ball is
     // Separate photographs of the balls, one under the light of each photograph, both in the order
@@ -124,7 +126,7 @@ struct relume_acquisition {
     int left_out;                            // photographs that are of no use; warnings name them
     char **warning;                          // [warnings]: sentences, also sent to the log
     int warnings;
-    double direction_error_deg;  // mean over the lights of sigma_deg
+    double direction_error_deg;  // root mean square over the lights of sigma_deg
     char *target;                // the photograph that shows the colour target, or NULL
     struct relume_chart chart;   // the colour target, with `target`
 };

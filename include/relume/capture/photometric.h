@@ -25,6 +25,8 @@ struct relume_photometric {
                                  // kept, as share of the albedo
     double residual;             // the median of `error` over the pixels that are known
     double *light_residual;      // [lights]: median over pixels of |miss| / albedo, lit ones
+    double *light_gain;          // [lights]: how many times as bright as expected, median likewise
+    double *mended_residual;     // [lights]: light_residual where light_gain is divided out
     int lights;
     struct relume_image confidence;  // one: 0 (a guess) to 1 (to a fraction of a degree); by how
                                      // narrowly the samples determine the normal

@@ -52,7 +52,7 @@ struct relume_captured_lights {
     int count;
     struct relume_vec3 *direction;  // [count], unit, in the order of the file
     struct relume_vec3 *position;   // [count], world units, or NULL: only directions are given
-    float (*intensity)[3];          // [count], or NULL: all 1
+    float (*intensity)[3];          // [count], or NULL: all 1; positions: power
     char **name;                    // [count], or NULL: the file does not name all
 };
 

@@ -87,6 +87,7 @@ static relume_status alloc_result(struct acquisition *s)
 static relume_status fill_result(struct acquisition *s)
 {
     struct relume_acquisition *out = s->out;
+    double squares = 0.0;
     out->width = s->width;
     out->height = s->height;
     const relume_status status = alloc_result(s);
@@ -104,7 +105,8 @@ static relume_status fill_result(struct acquisition *s)
         };
         if (!out->photo[i].path)
             return RELUME_ENOMEM;
-        out->direction_error_deg += from->sigma_deg / s->shots;
+        squares += from->sigma_deg * from->sigma_deg / s->shots;
+        out->direction_error_deg = sqrt(squares);
         out->direction[i] = s->p.near ? vec3_unit(from->position) : from->direction;
         if (out->position) {
             out->position[i] = from->position;
@@ -293,6 +295,24 @@ static double mean_miss(const struct relume_photometric *p)
     return sum;
 }
 
+// A photograph that misses less than half as much by one factor shows a lamp of another power; a
+// large factor is more likely a wrong direction.
+static relume_status name_outlier(struct acquisition *s, int i, double usual)
+{
+    const struct relume_photometric *p = &s->out->photometric;
+    const double miss = p->light_residual[i], gain = p->light_gain[i];
+    if (p->mended_residual[i] > 0.5 * miss || gain < 0.5 || gain > 2.0)
+        return acquire_warn_alike(
+            s, ALIKE_MISFIT, miss,
+            "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
+            "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
+            s->shot[i].path, 100.0 * miss, 100.0 * usual);
+    return acquire_warn_alike(
+        s, ALIKE_POWER, miss,
+        "lamp %d (%s) is %.0f %% %s than expected; --refine-brightness measures each lamp", i + 1,
+        path_name(s->shot[i].path), 100.0 * fabs(gain - 1.0), gain < 1.0 ? "dimmer" : "brighter");
+}
+
 // Photographs that miss far more than most: damaged in a way that no reader sees, taken when
 // something had moved, or under a lamp that is not as it is said to be.
 static relume_status name_outliers(struct acquisition *s)
@@ -307,11 +327,7 @@ static relume_status name_outliers(struct acquisition *s)
     for (int i = 0; i < p->lights && !status; i++) {
         s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
         if (s->out->photo[i].outlier)
-            status = acquire_warn_alike(
-                s, ALIKE_MISFIT, p->light_residual[i],
-                "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
-                "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
-                s->shot[i].path, 100.0 * p->light_residual[i], 100.0 * usual);
+            status = name_outlier(s, i, usual);
     }
     mem_free(sorted);
     return status;
@@ -462,6 +478,8 @@ static const char *find_conflict(const struct relume_acquire_params *p)
     if (p->ball_transfer.curve != RELUME_CURVE_AUTO && !p->ball_photograph_count)
         return "--ball-transfer needs --ball-photos; for the photographs themselves use "
                "--transfer";
+    if (p->near && p->distant)
+        return "expected one of --near and --distant";
     if (p->integrable && !p->refine_lights)
         return "--integrable needs --refine-lights";
     if (p->radial && !p->flat_count)
@@ -502,9 +520,10 @@ static relume_status check_inputs(const struct acquisition *s)
         return log_fail(
             p->log, RELUME_EINVAL,
             "--white: the matte ball shows the lamps' colour already; leave out --white");
-    if (acquire_refines(s) && p->near)
+    if (p->refine_lights && p->near)
         return log_fail(p->log, RELUME_EINVAL,
-                        "near lights cannot be refined; expected distant ones");
+                        "--refine-lights: the directions of near lights cannot be refined; "
+                        "--refine-brightness finds the power of each lamp");
     return RELUME_OK;
 }
 

@@ -46,6 +46,7 @@ enum acquire_alike {
     ALIKE_RIM,
     ALIKE_TWO,
     ALIKE_MISFIT,
+    ALIKE_POWER,
     ALIKE_KINDS
 };
 enum { SHOOT_FEW = 3 };  // said one by one

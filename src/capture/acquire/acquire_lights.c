@@ -3,6 +3,7 @@
 #include "capture/acquire/acquire.h"
 
 #include "capture/acquire/ball.h"
+#include "capture/acquire/rays.h"
 #include "capture/manifest/loaded_lights.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -11,9 +12,12 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_BALLS = 16 };
+enum { MOST_FOUND = 6 };              // balls that are looked for unless a number is given
+static const double SMALLEST = 0.4;   // of the largest ball's radius: smaller ones are left out
 static const double TOO_WIDE = 12.0;  // degrees: what is that wide is no lamp in a mirror
 static const double DISAGREE = 3.0;   // degrees between balls: lights are near
+static const double UNEVEN = 0.03;    // error of a lamp's middle, of its width
+static const double STATED = 4.0;     // photographs with two balls that outweigh what balls state
 static const double BELOW = -0.05;    // z of a direction: the lamp stood behind the ball
 
 // ---------------------------------------------------------------- balls
@@ -128,7 +132,7 @@ struct candidates {
     double bad[MOST_BALLS + 2 * CANDIDATES];
 };
 
-// Take the candidates that show the lamp best and do not overlap, the first of equals; returns how
+// Takes the candidates that show the lamp best and do not overlap, the first of equals. Returns how
 // badly the last of them shows it, infinity where there are too few.
 static double take_best(struct relume_acquisition *out, const struct candidates *t)
 {
@@ -148,6 +152,21 @@ static double take_best(struct relume_acquisition *out, const struct candidates 
                        fmax(t->ball[b].radius, t->ball[best].radius);
     }
     return worst;
+}
+
+// Adds the other candidates that show the lamp and do not overlap, where no number is given.
+static void take_more(struct acquisition *s, const struct candidates *t)
+{
+    struct relume_acquisition *out = s->out;
+    for (int k = 0; !s->p.balls && !s->p.matte && k < t->n && out->balls < MOST_FOUND; k++) {
+        const struct relume_ball *new = &t->ball[k];
+        bool apart = !(t->bad[k] > 0.0);
+        for (int b = 0; apart && b < out->balls; b++)
+            apart = hypot(new->x - out->ball[b].x, new->y - out->ball[b].y) >
+                    new->radius + out->ball[b].radius;
+        if (apart)
+            out->ball[out->balls++] = *new;
+    }
 }
 
 static relume_status add_candidates(struct candidates *t, const struct acquisition *s,
@@ -187,7 +206,8 @@ static relume_status find_best(struct acquisition *s, const struct relume_ball_p
 {
     struct relume_acquisition *out = s->out;
     struct candidates t = {0};
-    relume_status status = add_candidates(&t, s, &s->mean, out->balls + CANDIDATES, params);
+    const int wanted = out->balls;
+    relume_status status = add_candidates(&t, s, &s->mean, wanted + CANDIDATES, params);
     double bad = take_best(out, &t);
     if (!status)
         status = seek_tables(s, &bad);
@@ -197,6 +217,8 @@ static relume_status find_best(struct acquisition *s, const struct relume_ball_p
         if (!status)
             status = seek_tables(s, &bad);
     }
+    if (!status && !(bad > 0.0))
+        take_more(s, &t);
     if (!status && isinf(bad))
         return RELUME_EUNFIT;
     ball_sort(out->ball, out->balls);
@@ -223,7 +245,7 @@ static relume_status find_balls(struct acquisition *s)
     if (out->balls > MOST_BALLS)
         return log_fail(s->p.log, RELUME_EINVAL, "%d balls; expected at most %d", out->balls,
                         (int)MOST_BALLS);
-    out->ball = mem_zeroed((size_t)out->balls, sizeof *out->ball);
+    out->ball = mem_zeroed(MOST_BALLS, sizeof *out->ball);
     if (!out->ball)
         return RELUME_ENOMEM;
     if (s->p.ball)
@@ -274,9 +296,8 @@ static double place_ball(const struct acquisition *s, const struct relume_ball *
 }
 
 struct ball_lights {
-    int n;
-    struct relume_ball_light light[MOST_BALLS];
-    vec3 origin[MOST_BALLS], direction[MOST_BALLS];
+    struct relume_ball_light light[MOST_BALLS];  // [rays.n]
+    struct ball_rays rays;
 };
 
 // What every ball shows of every lamp: light[shots][balls].
@@ -295,25 +316,43 @@ static relume_status look_all(const struct acquisition *s, struct relume_ball_li
     return status;
 }
 
-// The directions in which the balls show the lamp of photograph `i`; `why` the last one shows none.
-static relume_status gather(struct acquisition *s, int i, const struct relume_ball_light *light,
-                            struct ball_lights *to, const char **why)
+static void add_ray(struct ball_rays *rays, const struct acquisition *s, int ball,
+                    const struct relume_ball_light *light)
 {
-    relume_status status = RELUME_OK;
-    to->n = 0;
-    *why = NULL;
-    for (int b = 0; !status && b < s->out->balls; b++) {
+    vec3 middle;
+    const double radius = place_ball(s, &s->out->ball[ball], &middle);
+    rays->origin[rays->n] = vec3_along(middle, light->origin, radius);
+    rays->direction[rays->n++] = light->direction;
+}
+
+// The directions in which balls show the lamp of one photograph; returns why the last one that
+// shows none does not, or NULL.
+static const char *gather(const struct acquisition *s, const struct relume_ball_light *light,
+                          struct ball_lights *to)
+{
+    const char *why = NULL;
+    struct ball_rays *rays = &to->rays;
+    rays->n = 0;
+    for (int b = 0; b < s->out->balls; b++) {
         const struct relume_ball_light *l = &light[b];
         const char *objects = objection(l, s->p.matte);
-        if (objects) {
-            *why = objects;
+        why = objects ? objects : why;
+        if (objects)
             continue;
-        }
-        vec3 middle;
-        const double radius = place_ball(s, &s->out->ball[b], &middle);
-        to->light[to->n] = *l;
-        to->origin[to->n] = vec3_along(middle, l->origin, radius);
-        to->direction[to->n++] = l->direction;
+        to->light[rays->n] = *l;
+        add_ray(rays, s, b, l);
+    }
+    return why;
+}
+
+static relume_status warn_highlights(struct acquisition *s, int i,
+                                     const struct relume_ball_light *light)
+{
+    relume_status status = RELUME_OK;
+    for (int b = 0; !status && b < s->out->balls; b++) {
+        const struct relume_ball_light *l = &light[b];
+        if (objection(l, s->p.matte))
+            continue;
         if (l->finding == RELUME_BALL_RIM || l->finding == RELUME_BALL_TWO)
             status = acquire_warn_alike(
                 s, l->finding == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,
@@ -323,42 +362,35 @@ static relume_status gather(struct acquisition *s, int i, const struct relume_ba
     return status;
 }
 
-// The mean direction; its error is how far several balls disagree.
+// The mean direction and its error by the balls' own.
 static void average(struct shot *shot, const struct ball_lights *seen)
 {
     vec3 sum = vec3_of(0.0, 0.0, 0.0);
-    double squares = 0.0, formal = 0.0;
-    for (int b = 0; b < seen->n; b++)
-        sum = vec3_add(sum, seen->direction[b]);
+    double formal = 0.0;
+    for (int b = 0; b < seen->rays.n; b++)
+        sum = vec3_add(sum, seen->rays.direction[b]);
     shot->direction = vec3_unit(sum);
-    for (int b = 0; b < seen->n; b++) {
-        const double off = vec3_angle(seen->direction[b], shot->direction) * 180.0 / M_PI;
-        squares += off * off;
+    for (int b = 0; b < seen->rays.n; b++)
         formal += seen->light[b].sigma_deg * seen->light[b].sigma_deg;
-    }
-    const double n = seen->n;
-    shot->sigma_deg = fmax(sqrt(formal) / n, n > 1 ? sqrt(squares / (n * (n - 1))) : 0.0);
+    shot->sigma_deg = sqrt(formal) / seen->rays.n;
     shot->light = seen->light[0];
     for (int c = 0; c < 3; c++)
         shot->intensity[c] = seen->light[0].intensity[c];
 }
 
-static relume_status locate(struct acquisition *s, int i, const struct ball_lights *seen,
-                            double *disagree)
+// Converts the brightness that a matte ball shows to power (relume_manifest.intensities).
+static void find_power(struct acquisition *s)
 {
-    struct shot *shot = &s->shot[i];
-    average(shot, seen);
-    for (int b = 0; b < seen->n; b++)
-        *disagree = fmax(*disagree, vec3_angle(seen->direction[b], shot->direction) * 360.0 / M_PI);
-    if (!s->p.near)
-        return RELUME_OK;
-    if (relume_light_triangulate(&shot->position, &shot->position_sigma, seen->origin,
-                                 seen->direction, seen->n))
-        return log_fail(s->p.log, RELUME_EUNFIT,
-                        "%s: the directions from %d balls do not cross at a lamp; expected two "
-                        "balls or more that show it, and a lamp near enough to measure",
-                        shot->path, seen->n);
-    return RELUME_OK;
+    vec3 middle;
+    double square = 0.0;
+    (void)place_ball(s, &s->out->ball[0], &middle);
+    for (int i = 0; i < s->shots; i++)
+        square += vec3_dot(s->shot[i].position, s->shot[i].position) / s->shots;
+    for (int i = 0; i < s->shots; i++) {
+        const vec3 apart = vec3_sub(s->shot[i].position, middle);
+        for (int c = 0; c < 3; c++)
+            s->shot[i].intensity[c] *= (float)(vec3_dot(apart, apart) / square);
+    }
 }
 
 // A mirror's outline that is too small turns lights away from the axis of view, some behind the
@@ -403,16 +435,70 @@ static bool is_mirror(const struct acquisition *s, const struct relume_ball_ligh
            moves > MOVES;
 }
 
-// Where the balls' outlines were given, they are what somebody says they are.
-static relume_status check_mirrors(const struct acquisition *s,
-                                   const struct relume_ball_light *light)
+// Leaves out balls for which `keep` is false: light[shots][balls] becomes narrower.
+static void keep_balls(struct acquisition *s, struct relume_ball_light *light, const bool *keep)
 {
+    struct relume_acquisition *out = s->out;
+    const int balls = out->balls;
+    int kept = 0;
+    for (int k = 0, to = 0; k < s->shots * balls; k++)
+        if (keep[k % balls])
+            light[to++] = light[k];
+    for (int b = 0; b < balls; b++)
+        if (keep[b])
+            out->ball[kept++] = out->ball[b];
+    out->balls = kept;
+}
+
+// Fits the rays of two balls alone.
+static relume_status compare_pair(struct rays_fit *fit, const struct acquisition *s,
+                                  const struct relume_ball_light *light, int a, int b)
+{
+    struct ball_rays *rays = mem_zeroed((size_t)s->shots, sizeof *rays);
+    if (!rays)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < s->shots; i++) {
+        const int both[] = {a, b};
+        for (int k = 0; k < 2; k++) {
+            const struct relume_ball_light *l =
+                &light[(size_t)i * (size_t)s->out->balls + (size_t)both[k]];
+            if (!objection(l, s->p.matte))
+                add_ray(&rays[i], s, both[k], l);
+        }
+    }
+    *fit = rays_compare(rays, s->shots);
+    mem_free(rays);
+    return RELUME_OK;
+}
+
+// Checks that all balls that were searched for are mirrors. Where no number was given, it keeps
+// mirrors that are not much smaller than the largest and agree with its rays.
+static relume_status check_mirrors(struct acquisition *s, struct relume_ball_light *light)
+{
+    const struct relume_acquisition *out = s->out;
+    bool keep[MOST_BALLS];
+    int first = -1, mirrors = 0;
+    relume_status status = RELUME_OK;
     if (s->p.matte || s->p.ball || s->p.ball_mask)
         return RELUME_OK;
-    for (int b = 0; b < s->out->balls; b++)
-        if (!is_mirror(s, light, b))
-            return no_ball(s);
-    return RELUME_OK;
+    for (int b = 0; b < out->balls; b++) {
+        keep[b] = is_mirror(s, light, b);
+        mirrors += keep[b];
+        if (keep[b] && (first < 0 || out->ball[b].radius > out->ball[first].radius))
+            first = b;
+    }
+    if (s->p.balls ? mirrors < out->balls : !mirrors)
+        return no_ball(s);
+    for (int b = 0; !s->p.balls && !status && b < out->balls; b++) {
+        struct rays_fit fit = {0};
+        if (b != first && keep[b])
+            status = compare_pair(&fit, s, light, first, b);
+        keep[b] &= out->ball[b].radius >= SMALLEST * out->ball[first].radius &&
+                   fit.near * 180.0 / M_PI < DISAGREE;
+    }
+    if (!status)
+        keep_balls(s, light, keep);
+    return status;
 }
 
 static const double LEAST_LEFT = 0.4;  // share of the photographs that show the lamp
@@ -450,49 +536,126 @@ static relume_status check_enough(const struct acquisition *s,
 static relume_status leave_still_out(struct acquisition *s, struct relume_ball_light *light)
 {
     const int balls = s->out->balls;
-    int twice = 0;
-    for (int i = 0; i < s->shots * balls; i++)
-        twice += light[i].finding == RELUME_BALL_TWO;
-    if (s->p.matte || 2 * twice <= s->shots * balls)
+    bool often = false;
+    for (int b = 0; b < balls; b++) {
+        int twice = 0;
+        for (int i = 0; i < s->shots; i++)
+            twice += light[i * balls + b].finding == RELUME_BALL_TWO;
+        often |= 2 * twice > s->shots;
+    }
+    if (s->p.matte || !often)
         return RELUME_OK;
     s->still = true;
     return look_all(s, light);
 }
 
+// Lamps so near that the balls see them in different directions get positions.
+static relume_status decide_near(struct acquisition *s, const struct ball_rays *rays)
+{
+    const struct rays_fit fit = rays_compare(rays, s->shots);
+    const double disagree = 2.0 * fit.distant * 180.0 / M_PI;
+    if (s->p.near)
+        return RELUME_OK;
+    if (!rays_show_near(&fit))
+        return disagree > DISAGREE
+                   ? acquire_warn(s,
+                                  "the balls disagree by %.1f degrees, and not as near lights do",
+                                  disagree)
+                   : RELUME_OK;
+    if (s->p.distant || s->p.refine_lights)
+        return acquire_warn(s,
+                            "the lamps stand near, about %.1f widths of the picture away: %s takes "
+                            "them as distant",
+                            0.5 * fit.distance, s->p.distant ? "--distant" : "--refine-lights");
+    s->p.near = true;
+    log_line(s->p.log, RELUME_NOTE,
+             "the lamps stand near, about %.1f widths of the picture away, by %d balls: positions "
+             "(--distant makes directions)",
+             0.5 * fit.distance, s->out->balls);
+    return RELUME_OK;
+}
+
+// Scales the errors by how much the balls disagree. The balls' own estimates count as STATED
+// photographs. All balls share one more error: lamps are brightest beside their middle.
+static void judge_errors(struct acquisition *s, const struct ball_rays *rays)
+{
+    const struct rays_fit fit = rays_compare(rays, s->shots);
+    const double found = (s->p.near ? fit.near : fit.distant) * sqrt(2.0) * 180.0 / M_PI;
+    double stated = 0.0;
+    int several = 0;
+    for (int i = 0; i < s->shots; i++)
+        if (rays[i].n > 1) {
+            stated += s->shot[i].sigma_deg * s->shot[i].sigma_deg * rays[i].n;
+            several++;
+        }
+    const double own = fmax(stated / fmax(several, 1.0), 1e-12);
+    const double ratio = several ? found * found / own : 1.0;
+    const double scale = sqrt((several * ratio + STATED) / (several + STATED));
+    for (int i = 0; i < s->shots; i++)
+        s->shot[i].sigma_deg =
+            hypot(scale * s->shot[i].sigma_deg, UNEVEN * s->shot[i].light.spread_deg);
+}
+
+static relume_status place_lamps(struct acquisition *s, const struct ball_rays *rays)
+{
+    vec3 *position = mem_array((size_t)s->shots, sizeof *position);
+    double *sigma = mem_array((size_t)s->shots, sizeof *sigma), squares = 0.0;
+    relume_status status = position && sigma ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < s->shots; i++)
+        squares += s->shot[i].sigma_deg * s->shot[i].sigma_deg * rays[i].n / s->shots;
+    const double error = sqrt(squares / 2.0) * M_PI / 180.0;  // of one ray along one axis
+    if (!status && !rays_place(position, sigma, rays, s->shots, error))
+        status = log_fail(s->p.log, RELUME_EUNFIT,
+                          "%s: the directions from %d balls do not cross at a lamp; expected two "
+                          "balls or more that show it, and a lamp near enough to measure",
+                          s->shot[0].path, s->out->balls);
+    for (int i = 0; !status && i < s->shots; i++) {
+        s->shot[i].position = position[i];
+        s->shot[i].position_sigma = sigma[i];
+    }
+    mem_free(position);
+    mem_free(sigma);
+    return status;
+}
+
 static relume_status locate_all(struct acquisition *s, const struct relume_ball_light *light)
 {
-    const int shots = s->shots;
-    double disagree = 0.0;
-    relume_status status = RELUME_OK;
+    const int shots = s->shots, balls = s->out->balls;
+    const struct relume_ball *ball = &s->out->ball[0];
+    struct ball_rays *rays = mem_array((size_t)shots, sizeof *rays);
+    relume_status status = rays ? RELUME_OK : RELUME_ENOMEM;
     for (int k = 0, i = 0; !status && k < shots; k++) {
         struct ball_lights seen;
-        const char *why;
-        const struct relume_ball *ball = &s->out->ball[0];
-        status = gather(s, i, light + (size_t)k * (size_t)s->out->balls, &seen, &why);
-        if (!status && !seen.n)
+        const struct relume_ball_light *of = light + (size_t)k * (size_t)balls;
+        const char *why = gather(s, of, &seen);
+        if (!seen.rays.n) {
             status =
                 acquire_drop(s, i, true, "%s on the ball at %.0f,%.0f with radius %.0f%s%s", why,
                              ball->x, ball->y, ball->radius, s->shot[i].ball_path ? " in " : "",
                              s->shot[i].ball_path ? s->shot[i].ball_path : "");
-        else if (!status)
-            status = locate(s, i++, &seen, &disagree);
+            continue;
+        }
+        status = warn_highlights(s, i, of);
+        average(&s->shot[i], &seen);
+        rays[i++] = seen.rays;
     }
     if (!status)
-        status = warn_below(s);
-    if (!status && !s->p.near && disagree > DISAGREE)
-        status = acquire_warn(s,
-                              "the balls disagree by up to %.1f degrees; near lights? --near "
-                              "makes positions",
-                              disagree);
-    return status;
+        status = decide_near(s, rays);
+    if (!status)
+        judge_errors(s, rays);
+    if (!status && s->p.near)
+        status = place_lamps(s, rays);
+    if (!status && s->p.near && s->p.matte)
+        find_power(s);
+    mem_free(rays);
+    return status ? status : warn_below(s);
 }
 
 static relume_status lights_from_balls(struct acquisition *s)
 {
-    if (s->p.near && (s->p.ball || s->p.balls ? s->p.balls : 1) < 2)
+    if (s->p.near && s->p.balls == 1)
         return log_fail(s->p.log, RELUME_EINVAL,
-                        "positions of near lights need two balls or more; found %d",
-                        s->p.balls > 0 ? s->p.balls : 1);
+                        "positions of near lights need two balls or more; found 1");
     relume_status status = find_balls(s);
     if (status)
         return status;
@@ -503,6 +666,10 @@ static relume_status lights_from_balls(struct acquisition *s)
         status = leave_still_out(s, light);
     if (!status)
         status = check_mirrors(s, light);
+    if (!status && s->p.near && s->out->balls < 2)
+        status =
+            log_fail(s->p.log, RELUME_EUNFIT,
+                     "positions of near lights need two balls or more; found %d", s->out->balls);
     if (!status)
         status = check_enough(s, light);
     if (!status && s->still)

@@ -8,13 +8,12 @@
 
 #include "core/base/memory.h"
 
-static const float DARK = 0.02f;         // peaks below are no lamp
-static const float BRIGHT = 0.5f;        // a ball that is lit all over and darker shows no lamp
-static const double RIM = 0.975;         // of the radius
-static const double BORDER = 1.0;        // pixels: what lies behind the ball mixes in
-static const double FULL = 0.15;         // share of the disc
-static const double SECOND = 0.1;        // of the first spot's light
-static const double PIXEL_SIGMA = 0.15;  // error of a spot's middle, pixels
+static const float DARK = 0.02f;   // peaks below are no lamp
+static const float BRIGHT = 0.5f;  // a ball that is lit all over and darker shows no lamp
+static const double RIM = 0.975;   // of the radius
+static const double BORDER = 1.0;  // pixels: what lies behind the ball mixes in
+static const double FULL = 0.15;   // share of the disc
+static const double SECOND = 0.1;  // of the first spot's light
 
 const char *relume_ball_finding_text(enum relume_ball_finding finding)
 {
@@ -38,8 +37,8 @@ struct window {
 struct spot {
     double weight, x, y;
     vec3 sum;  // of directions
-
-    int pixels;
+    // Sums over its border of weight^2, times 1, x, y and x^2 + y^2 from the window's corner
+    double step, step_x, step_y, step_square;
 };
 
 static float value(const struct window *w, int x, int y)
@@ -107,7 +106,27 @@ static void add_pixel(struct spot *s, const struct window *w, int x, int y,
     s->weight += weight;
     s->x += weight * px;
     s->y += weight * py;
-    s->pixels++;
+}
+
+// Adds the border between a pixel and its neighbour.
+static void add_border(struct spot *s, const struct window *w, int x, int y, int nx, int ny)
+{
+    const double weight = (double)(value(w, x, y) - w->threshold);
+    const double bx = 0.5 * (x + nx) + 0.5, by = 0.5 * (y + ny) + 0.5;
+    s->step += weight * weight;
+    s->step_x += weight * weight * bx;
+    s->step_y += weight * weight * by;
+    s->step_square += weight * weight * (bx * bx + by * by);
+}
+
+static void follow_border(struct spot *s, const struct window *w, int x, int y)
+{
+    for (int k = 0; k < 4; k++) {
+        const int nx = x + (k == 0) - (k == 1), ny = y + (k == 2) - (k == 3);
+        if (nx < 0 || ny < 0 || nx >= w->width || ny >= w->height ||
+            !(value(w, nx, ny) > w->threshold))
+            add_border(s, w, x, y, nx, ny);
+    }
 }
 
 // The connected lit pixels around (x, y); each pixel is visited once.
@@ -121,6 +140,7 @@ static struct spot follow_spot(struct window *w, int x, int y, const struct relu
     while (depth > 0) {
         const int at = w->stack[--depth], cx = at % w->width, cy = at / w->width;
         add_pixel(&s, w, cx, cy, ball, camera);
+        follow_border(&s, w, cx, cy);
         for (int k = 0; k < 9; k++) {
             const int nx = cx + k % 3 - 1, ny = cy + k / 3 - 1;
             if (nx < 0 || ny < 0 || nx >= w->width || ny >= w->height ||
@@ -152,14 +172,32 @@ static void find_spots(struct window *w, const struct relume_ball *ball,
         }
 }
 
-// A pixel of the picture turns the direction by 2 / (r cos) where the surface is seen at that
-// cosine.
-static double degrees_per_pixel(const struct relume_ball *ball, vec3 n, vec3 v)
+// Variance of a spot's middle along one axis, pixels. An edge between a dark pixel and one of the
+// weight w lies anywhere between them. The sum of weights errs by w / sqrt(12) there. The middle
+// errs by that times the edge's distance, over all weight. Steps along x and along y both sample
+// the whole border, so half of the sum counts. Each axis has half of that.
+static double spot_variance(const struct spot *s, const struct window *w)
 {
-    return 2.0 / (ball->radius * fmax(vec3_dot(n, v), 0.02)) * 180.0 / M_PI;
+    const double x = s->x / s->weight - w->x, y = s->y / s->weight - w->y;
+    const double square =
+        s->step_square - 2.0 * (x * s->step_x + y * s->step_y) + (x * x + y * y) * s->step;
+    return fmax(square, 0.0) / 48.0 / (s->weight * s->weight);
 }
 
-static struct relume_ball_light describe(const struct spot *s, const struct relume_ball *ball,
+// Standard error of a direction, degrees, at a surface of cosine c. An error e of
+// the spot turns the reflected direction by 2 e / (r c) away from the axis of view. Around that
+// axis it turns by 2 e c / r. An error of the radius counts by the spot's share of the radius, away
+// from the axis alone. The radius has half the variance of the middle.
+static double direction_sigma(const struct relume_ball *ball, double c, double spot)
+{
+    const double outline = ball->sigma * ball->sigma, sine2 = fmax(1.0 - c * c, 0.0);
+    const double around = spot + outline, away = around + 0.5 * sine2 * outline;
+    const double cosine2 = fmax(c * c, 4e-4);
+    return 2.0 / ball->radius * sqrt(away / cosine2 + around * cosine2) * 180.0 / M_PI;
+}
+
+static struct relume_ball_light describe(const struct spot *s, const struct window *w,
+                                         const struct relume_ball *ball,
                                          const struct relume_ball_camera *camera)
 {
     struct relume_ball_light light = {.x = s->x / s->weight, .y = s->y / s->weight};
@@ -170,9 +208,7 @@ static struct relume_ball_light describe(const struct spot *s, const struct relu
     light.direction = vec3_unit(mean);
     light.origin = n;
     light.spread_deg = sqrt(2.0 * (1.0 - length)) * 180.0 / M_PI;
-    const double wide = 0.05 * sqrt((double)s->pixels);  // lamps are not evenly bright
-    light.sigma_deg = degrees_per_pixel(ball, n, v) *
-                      sqrt(ball->sigma * ball->sigma + PIXEL_SIGMA * PIXEL_SIGMA + wide * wide);
+    light.sigma_deg = direction_sigma(ball, vec3_dot(n, v), spot_variance(s, w));
     return light;
 }
 
@@ -190,7 +226,7 @@ static struct relume_ball_light look(struct window *w, const struct relume_ball 
     find_spots(w, ball, camera, spot);
     if (!(spot[0].weight > 0.0))
         return (struct relume_ball_light){.finding = RELUME_BALL_DARK};
-    struct relume_ball_light light = describe(&spot[0], ball, camera);
+    struct relume_ball_light light = describe(&spot[0], w, ball, camera);
     if (ball_distance(ball, camera, light.x, light.y) > (RIM - 1.0) * ball->radius)
         light.finding = RELUME_BALL_RIM;
     else if (spot[1].weight > SECOND * spot[0].weight)

@@ -38,7 +38,8 @@ struct fit {
     bool is_shared;                  // all pixels see the same lights from the same side
     struct stereo_field field;
     size_t step;  // one pixel in `step` judges the lights
-    float *miss;  // [JUDGED][lights]: |miss| / albedo; NaN: not lit, not known
+    // [JUDGED][lights]: values by Lambert's law and in the photograph, / albedo; NaN: not lit
+    float (*judged)[2];
 };
 
 struct pixel {
@@ -127,9 +128,11 @@ static void judge_lights(const struct fit *f, const struct pixel *p, vec3 g)
     const double albedo = vec3_length(g);
     for (int i = 0; i < f->lights; i++) {
         const double expected = vec3_dot(g, p->direction[i]);
-        if (expected > LAMBERT_GRAZING * albedo && !is_clipped(f, p, i))
-            f->miss[judge * (size_t)f->lights + (size_t)i] =
-                (float)(fabs((double)luminance_709f(sample_of(f, i, p->at)) - expected) / albedo);
+        if (expected > LAMBERT_GRAZING * albedo && !is_clipped(f, p, i)) {
+            float *to = f->judged[judge * (size_t)f->lights + (size_t)i];
+            to[0] = (float)(expected / albedo);
+            to[1] = (float)((double)luminance_709f(sample_of(f, i, p->at)) / albedo);
+        }
     }
 }
 
@@ -296,6 +299,31 @@ static double median(float *v, size_t n)
     return n ? (double)v[n / 2] : 0.0;
 }
 
+// The median |miss| / albedo under a light that is `gain` times as bright.
+static double median_miss(float *some, const struct fit *f, int light, double gain)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < JUDGED; k++) {
+        const float *j = f->judged[k * (size_t)f->lights + (size_t)light];
+        if (!isnan(j[0]))
+            some[n++] = fabsf(j[1] / (float)gain - j[0]);
+    }
+    return median(some, n);
+}
+
+// Median ratio of shown to expected values of a light; 1 where it is dark.
+static double median_gain(float *some, const struct fit *f, int light)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < JUDGED; k++) {
+        const float *j = f->judged[k * (size_t)f->lights + (size_t)light];
+        if (!isnan(j[0]))
+            some[n++] = j[1] / j[0];
+    }
+    const double gain = median(some, n);
+    return gain > 0.0 ? gain : 1.0;
+}
+
 static relume_status find_residuals(struct fit *f)
 {
     const size_t pixels = (size_t)f->width * (size_t)f->height;
@@ -304,13 +332,9 @@ static relume_status find_residuals(struct fit *f)
     if (!some)
         return RELUME_ENOMEM;
     for (int i = 0; i < f->lights; i++) {
-        size_t n = 0;
-        for (size_t k = 0; k < JUDGED; k++) {
-            const float miss = f->miss[k * (size_t)f->lights + (size_t)i];
-            if (!isnan(miss))
-                some[n++] = miss;
-        }
-        out->light_residual[i] = median(some, n);
+        out->light_residual[i] = median_miss(some, f, i, 1.0);
+        out->light_gain[i] = median_gain(some, f, i);
+        out->mended_residual[i] = median_miss(some, f, i, out->light_gain[i]);
     }
     size_t n = 0;
     for (size_t k = 0; k < pixels; k++)
@@ -345,13 +369,15 @@ static relume_status alloc(struct fit *f)
     f->scratch = mem_array(workers * lights, sizeof *f->scratch);
     f->towards = mem_array(workers * lights, sizeof *f->towards);
     f->bright = mem_array(workers * lights, sizeof *f->bright);
-    f->miss = mem_array(JUDGED * lights, sizeof *f->miss);
+    f->judged = mem_array(JUDGED * lights, sizeof *f->judged);
     f->out->light_residual = mem_zeroed(lights, sizeof *f->out->light_residual);
-    if (!f->samples || !f->white || !f->scratch || !f->towards || !f->bright || !f->miss ||
-        !f->out->light_residual)
+    f->out->light_gain = mem_zeroed(lights, sizeof *f->out->light_gain);
+    f->out->mended_residual = mem_zeroed(lights, sizeof *f->out->mended_residual);
+    if (!f->samples || !f->white || !f->scratch || !f->towards || !f->bright || !f->judged ||
+        !f->out->light_residual || !f->out->light_gain || !f->out->mended_residual)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < JUDGED * lights; i++)
-        f->miss[i] = NAN;
+        f->judged[i][0] = NAN;
     for (int i = 0; i < f->lights; i++)
         relume_capture_white(f->capture, i, f->white[i]);
     relume_status status = relume_image_create(&f->out->normal, f->width, f->height, 3);
@@ -371,7 +397,7 @@ static void release(struct fit *f)
     mem_free(f->scratch);
     mem_free(f->towards);
     mem_free(f->bright);
-    mem_free(f->miss);
+    mem_free(f->judged);
     stereo_field_destroy(&f->field);
     near_view_close(&f->near);
     relume_image_destroy(&f->mask);
@@ -384,6 +410,8 @@ void relume_photometric_destroy(struct relume_photometric *photometric)
     relume_image_destroy(&photometric->error);
     relume_image_destroy(&photometric->confidence);
     mem_free(photometric->light_residual);
+    mem_free(photometric->light_gain);
+    mem_free(photometric->mended_residual);
     *photometric = (struct relume_photometric){0};
 }
 

@@ -10,6 +10,7 @@
 
 #include "capture/acquire/integrable.h"
 #include "capture/acquire/refine.h"
+#include "capture/manifest/near_view.h"
 #include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -41,6 +42,9 @@ struct refiner {
     int lights, threads;
     bool brightness;  // alone: directions stay
     bool plain;       // surfaces are fitted to all samples, outliers too
+    bool is_near;     // each pixel has its own directions; brightness alone
+    struct near_view near;
+    vec3 *point;  // [PIXELS] in the world, of near lights
     const vec3 *given;
     size_t pixels;
     int step, columns, rows;         // of the lattice of pixels
@@ -52,6 +56,7 @@ struct refiner {
     vec3 *light;                     // [lights]
     double *bright;                  // [lights]
     struct lambert_sample *scratch;  // [workers][lights]
+    vec3 *towards;                   // [workers][lights]
 };
 
 static bool is_useful(const float *value, int lights)
@@ -62,14 +67,25 @@ static bool is_useful(const float *value, int lights)
     return lit >= 4 && 2 * lit >= lights;
 }
 
-static int take_rows(struct refiner *r, const float *band, size_t stride, size_t at,
-                     float (*white)[3])
+// The unit direction from a point to a light; `*gain` as near_view_direction.
+static vec3 direction_at(double *gain, const struct refiner *r, vec3 point, int light)
+{
+    *gain = 1.0;
+    return r->is_near ? near_view_direction(gain, &r->near, light, point) : r->given[light];
+}
+
+static int take_pixel(struct refiner *r, const float *band, size_t stride, int x, int y,
+                      float (*white)[3])
 {
     float *to = r->value + r->pixels * (size_t)r->lights;
+    vec3 *point = &r->point[r->pixels];
+    *point = r->is_near ? near_view_pixel(&r->near, x, y) : vec3_of(0, 0, 0);
     for (int i = 0; i < r->lights; i++) {
-        const float *p = band + (size_t)i * stride + 3 * at;
-        const bool clips = p[0] >= CLIPPED * white[i][0] || p[1] >= CLIPPED * white[i][1] ||
-                           p[2] >= CLIPPED * white[i][2];
+        double gain;
+        (void)direction_at(&gain, r, *point, i);
+        const float *p = band + (size_t)i * stride + 3 * x, most = CLIPPED * (float)gain;
+        const bool clips =
+            p[0] >= most * white[i][0] || p[1] >= most * white[i][1] || p[2] >= most * white[i][2];
         to[i] = clips ? NAN : luminance_709f(p);
     }
     return r->pixels < PIXELS && is_useful(to, r->lights) ? (int)r->pixels++ : -1;
@@ -98,14 +114,15 @@ static relume_status read_rows(struct refiner *r, const struct relume_image *mas
     const size_t height = (size_t)relume_capture_height(r->capture);
     relume_table *table;
     relume_status status = relume_table_open(
-        &table, r->capture, 0, relume_table_params(.log = log, .threads = r->threads));
+        &table, r->capture, 0,
+        relume_table_params(.keep_near = true, .log = log, .threads = r->threads));
     for (size_t y = 0; !status && y < height; y++) {
         status = relume_table_read(table, 1, band);
         for (size_t x = 0; !status && y % step == 0 && x < width; x += step)
             r->slot[y / step * (size_t)r->columns + x / step] =
                 mask->data && mask->data[y * width + x] <= 0.5f
                     ? -1
-                    : take_rows(r, band, 3 * width, x, white);
+                    : take_pixel(r, band, 3 * width, (int)x, (int)y, white);
     }
     relume_table_destroy(&table);
     return status;
@@ -118,6 +135,8 @@ static relume_status read_pixels(struct refiner *r, const struct relume_log *log
         mem_array((size_t)r->lights * 3, (size_t)relume_capture_width(r->capture) * sizeof *band);
     float(*white)[3] = mem_array((size_t)r->lights, sizeof *white);
     relume_status status = relume_capture_mask(&mask, r->capture, 0, log);
+    if (!status && r->is_near)
+        status = near_view_open(&r->near, r->capture, 0, log);
     if (!status && !(band && white))
         status = RELUME_ENOMEM;
     if (!status)
@@ -140,6 +159,10 @@ static void fit_pixel(void *context, size_t item, int worker)
 {
     struct refiner *r = context;
     const vec3 *light = r->brightness ? r->given : r->light;
+    vec3 *towards = r->towards + (size_t)worker * (size_t)r->lights;
+    double gain;
+    for (int i = 0; i < r->lights; i++)
+        towards[i] = r->is_near ? direction_at(&gain, r, r->point[item], i) : light[i];
     struct lambert_sample *s = r->scratch + (size_t)worker * (size_t)r->lights;
     const float *value = r->value + item * (size_t)r->lights;
     int n = 0;
@@ -148,7 +171,7 @@ static void fit_pixel(void *context, size_t item, int worker)
             const float bright = r->brightness ? (float)vec3_length(r->light[i]) : 1.0f;
             s[n++] = (struct lambert_sample){value[i] / bright, 1.0f, i};
         }
-    r->known[item] = n >= 4 && lambert_fit(&r->g[item], light, s, &n, r->plain) != NULL;
+    r->known[item] = n >= 4 && lambert_fit(&r->g[item], towards, s, &n, r->plain) != NULL;
 }
 
 static int bin_of(double component)
@@ -187,20 +210,6 @@ static bool is_in(const struct half *half, vec3 g)
     return vec3_dot(g, half->axis) >= half->least * vec3_length(g);
 }
 
-// The solution of m l = b, in place of b, among the multiples of a light.
-static bool solve_along(double b[3], const double m[9], vec3 light)
-{
-    const double l[3] = {light.x, light.y, light.z};
-    double square = 0.0, along = 0.0;
-    for (int j = 0; j < 9; j++)
-        square += m[j] * l[j / 3] * l[j % 3];
-    for (int j = 0; j < 3; j++)
-        along += b[j] * l[j];
-    for (int j = 0; j < 3; j++)
-        b[j] = along / square * l[j];
-    return square > 0.0 && along > 0.0;
-}
-
 // Reweighted least squares of one light over the pixels that it lights.
 static bool light_from(vec3 *out, const struct refiner *r, size_t item, const struct half *half)
 {
@@ -226,7 +235,7 @@ static bool light_from(vec3 *out, const struct refiner *r, size_t item, const st
             sum += trust * miss * miss;
             weight += trust;
         }
-        if (weight < 20.0 || !(r->brightness ? solve_along(b, m, light) : lsq_solve(m, 3, b, 1)))
+        if (weight < 20.0 || !lsq_solve(m, 3, b, 1))
             return false;
         light = vec3_of(b[0], b[1], b[2]);
         scale = fmax(2.0 * sqrt(sum / weight), 1e-3);
@@ -235,11 +244,45 @@ static bool light_from(vec3 *out, const struct refiner *r, size_t item, const st
     return true;
 }
 
+// The brightness of one light likewise, by its directions from the pixels.
+static bool brightness_from(double *out, const struct refiner *r, size_t item)
+{
+    double bright = *out, scale = 0.1;
+    for (int round = 0; round < 6; round++) {
+        double square = 0.0, along = 0.0, sum = 0.0, weight = 0.0, gain;
+        for (size_t k = 0; k < r->pixels; k++) {
+            const double v = (double)r->value[k * (size_t)r->lights + item];
+            if (!r->known[k] || isnan(v))
+                continue;
+            const vec3 l = direction_at(&gain, r, r->point[k], (int)item);
+            const double size = vec3_length(r->g[k]), shown = vec3_dot(r->g[k], l) / size;
+            if (shown < 0.15)
+                continue;
+            const double miss = v / size - bright * shown;
+            const double trust = r->weight[k] / (1.0 + miss * miss / (scale * scale));
+            square += trust * shown * shown;
+            along += trust * shown * v / size;
+            sum += trust * miss * miss;
+            weight += trust;
+        }
+        if (weight < 20.0 || !(along > 0.0))
+            return false;
+        bright = along / square;
+        scale = fmax(2.0 * sqrt(sum / weight), 1e-3);
+    }
+    *out = bright;
+    return true;
+}
+
 static void fit_light(void *context, size_t item, int worker)
 {
     (void)worker;
     struct refiner *r = context;
-    light_from(&r->light[item], r, item, &(struct half){{0, 0, 0}, 0.0});
+    double bright = vec3_length(r->light[item]);
+    if (!r->brightness)
+        light_from(&r->light[item], r, item, &(struct half){{0, 0, 0}, 0.0});
+    else if (brightness_from(&bright, r, item))
+        r->light[item] = vec3_scale(r->given[item], bright);
 }
 
 // light <- A light with the A that brings the lights nearest to s_i given_i, s_i being free.
@@ -346,6 +389,15 @@ static relume_status judge(bool *believed, const struct refiner *r, const vec3 *
     return RELUME_OK;
 }
 
+// A light as pixel `k` sees it: its direction times its brightness.
+static vec3 light_at(const struct refiner *r, size_t k, int light)
+{
+    double gain;
+    return r->is_near ? vec3_scale(direction_at(&gain, r, r->point[k], light),
+                                   vec3_length(r->light[light]))
+                      : r->light[light];
+}
+
 // The median |miss| / albedo of lit samples, with surfaces fitted to the lights as they are.
 static relume_status find_residual(double *residual, struct refiner *r)
 {
@@ -355,7 +407,8 @@ static relume_status find_residual(double *residual, struct refiner *r)
     for (size_t k = 0; miss && k < r->pixels; k++)
         for (int i = 0; r->known[k] && i < r->lights; i++) {
             const double v = (double)r->value[k * (size_t)r->lights + (size_t)i];
-            const double expected = vec3_dot(r->g[k], r->light[i]), size = vec3_length(r->g[k]);
+            const double expected = vec3_dot(r->g[k], light_at(r, k, i));
+            const double size = vec3_length(r->g[k]);
             if (!isnan(v) && expected > LAMBERT_GRAZING * size)
                 miss[n++] = fabs(v - expected) / size;
         }
@@ -465,21 +518,26 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
         .lights = m->lights,
         .threads = thread_count(p.threads),
         .brightness = p.brightness,
+        .is_near = near_view_applies(capture, 0),
         .given = m->directions,
     };
-    if (m->lights < LEAST_LIGHTS || m->positions || !lambert_spans(m->directions, m->lights))
+    if (m->lights < LEAST_LIGHTS || (m->positions && !p.brightness) ||
+        !lambert_spans(m->directions, m->lights))
         return log_fail(p.log, RELUME_EUNFIT,
-                        "lights cannot be refined: expected %d distant ones or more, in different "
-                        "planes; found %d",
-                        (int)LEAST_LIGHTS, m->lights);
+                        "lights cannot be refined: expected %d%s or more, in different planes; "
+                        "found %d",
+                        (int)LEAST_LIGHTS, p.brightness ? "" : " distant ones", m->lights);
     r.value = mem_array((size_t)(PIXELS + 1) * (size_t)r.lights, sizeof *r.value);
     r.g = mem_array(PIXELS, sizeof *r.g);
+    r.point = mem_array(PIXELS + 1, sizeof *r.point);
     r.known = mem_array(PIXELS, sizeof *r.known);
     r.weight = mem_array(PIXELS, sizeof *r.weight);
     r.light = mem_copy(m->directions, (size_t)r.lights, sizeof *r.light);
     r.bright = mem_array((size_t)r.lights, sizeof *r.bright);
     r.scratch = mem_array((size_t)r.threads * (size_t)r.lights, sizeof *r.scratch);
-    relume_status status = r.value && r.g && r.known && r.weight && r.light && r.bright && r.scratch
+    r.towards = mem_array((size_t)r.threads * (size_t)r.lights, sizeof *r.towards);
+    relume_status status = r.value && r.g && r.point && r.known && r.weight && r.light &&
+                                   r.bright && r.scratch && r.towards
                                ? RELUME_OK
                                : RELUME_ENOMEM;
     if (!status)
@@ -498,13 +556,16 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
         intensity[i] = vec3_length(r.light[i]);
         direction[i] = vec3_unit(r.light[i]);
     }
+    near_view_close(&r.near);
     mem_free(r.slot);
     mem_free(r.value);
+    mem_free(r.point);
     mem_free(r.g);
     mem_free(r.known);
     mem_free(r.weight);
     mem_free(r.light);
     mem_free(r.bright);
     mem_free(r.scratch);
+    mem_free(r.towards);
     return status;
 }

@@ -20,7 +20,8 @@ struct relume_acquire_refine_params {
 #define relume_acquire_refine_params(...)                                                          \
     (&(const struct relume_acquire_refine_params){RELUME_SIZED(relume_acquire_refine_params),      \
                                                   __VA_ARGS__})
-// Better directions and intensities from the images of a planar capture with distant lights:
+// Better directions and intensities from the images of a planar capture with distant lights, or
+// with `brightness` the power of near ones:
 // surface vectors and lights in turn minimise what Lambert's law misses, shadows and highlights
 // left out; the linear map that the images leave open (it contains the bas-relief ambiguity,
 // Belhumeur, Kriegman, Yuille 1999) is the one that brings the lights nearest to those given.

@@ -136,6 +136,17 @@ static relume_status read_falloff(const struct parser *p, const jvalue *value)
     return RELUME_OK;
 }
 
+static relume_status read_intensities_at(const struct parser *p, const jvalue *value)
+{
+    const char *text = jvalue_text(value);
+    if (!value || jvalue_is_null(value))
+        return RELUME_OK;
+    if (!text || (strcmp(text, "lamp") && strcmp(text, "origin")))
+        return log_wrong(p->log, p->path, "lights.intensities_at", "lamp or origin");
+    p->d->m.intensities_at_origin = !strcmp(text, "origin");
+    return RELUME_OK;
+}
+
 static relume_status read_lights(const struct parser *p, const jvalue *lights)
 {
     struct draft *d = p->d;
@@ -161,6 +172,8 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
         status = read_intensities(p, intensities, n);
     if (!status)
         status = read_falloff(p, jvalue_member(lights, "falloff"));
+    if (!status)
+        status = read_intensities_at(p, jvalue_member(lights, "intensities_at"));
     d->m.lights = n;
     return status ? status : draft_check_lights(d, p->path, p->log);
 }
@@ -507,6 +520,8 @@ relume_status manifest_lights(struct relume_captured_lights *out, const jvalue *
     *out = (struct relume_captured_lights){0};
     // The output of `relume lights --json` has the directions at its top.
     relume_status status = read_lights(&p, lights ? lights : root);
+    if (!status)
+        status = draft_state_power(&draft);
     if (!status) {
         const size_t n = (size_t)draft.m.lights;
         out->count = draft.m.lights;

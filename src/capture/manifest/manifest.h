@@ -49,6 +49,10 @@ relume_status draft_check_lights(struct draft *d, const char *path, const struct
 relume_status draft_check_geometry(struct draft *d, const char *path, const struct relume_log *log);
 relume_status draft_check_views(const struct draft *d, const char *path,
                                 const struct relume_log *log);
+// Restates the intensities of near lights, which may be their power or what they show at 0, 0, 0
+// (relume_manifest.intensities_at_origin). RELUME_ENOMEM.
+relume_status draft_state_power(struct draft *d);
+relume_status draft_state_at_origin(struct draft *d);
 // The draft's arrays are those of its manifest from now on.
 void draft_publish(struct draft *d);
 

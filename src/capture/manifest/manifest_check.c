@@ -1,6 +1,7 @@
 // manifest_check.c - what is promised of a manifest, whether a file says it or a program
 #include "capture/manifest/manifest.h"
 #include "core/base/log.h"
+#include "core/base/memory.h"
 #include "core/math/vec.h"
 #include "image/geometry/geometry.h"
 
@@ -50,6 +51,58 @@ relume_status draft_check_lights(struct draft *d, const char *path, const struct
             if (!(d->intensities[i][c] >= 1e-30f && d->intensities[i][c] <= 1e30f))
                 status = log_wrong(log, path, "lights.intensities", MANIFEST_INTENSITIES);
     return status;
+}
+
+static double mean_square(const vec3 *position, int n)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += vec3_dot(position[i], position[i]) / n;
+    return sum;
+}
+
+// Factors to restate intensities by; false where all are 1.
+static bool find_factors(float *factor, const struct draft *d, bool at_origin)
+{
+    const double square = mean_square(d->positions, d->m.lights);
+    bool differ = false;
+    for (int i = 0; i < d->m.lights; i++) {
+        const double own = vec3_dot(d->positions[i], d->positions[i]);
+        const double shown = square / fmax(own, 1e-6 * square);
+        factor[i] = (float)(at_origin ? shown : 1.0 / shown);
+        differ |= factor[i] != 1.0f;
+    }
+    return differ;
+}
+
+static relume_status restate(struct draft *d, bool at_origin)
+{
+    const size_t n = (size_t)d->m.lights;
+    if (!d->positions || d->m.no_falloff || d->m.intensities_at_origin == at_origin)
+        return RELUME_OK;
+    const bool given = d->intensities;
+    float *factor = mem_array(n, sizeof *factor);
+    relume_status status = factor ? RELUME_OK : RELUME_ENOMEM;
+    const bool differ = !status && find_factors(factor, d, at_origin);
+    if (differ && !given && !(d->intensities = arena_array(&d->arena, n, sizeof *d->intensities)))
+        status = RELUME_ENOMEM;
+    for (size_t i = 0; differ && !status && i < n; i++)
+        for (int c = 0; c < 3; c++)
+            d->intensities[i][c] = (given ? d->intensities[i][c] : 1.0f) * factor[i];
+    mem_free(factor);
+    d->m.intensities_at_origin = at_origin;
+    draft_publish(d);
+    return status;
+}
+
+relume_status draft_state_power(struct draft *d)
+{
+    return restate(d, false);
+}
+
+relume_status draft_state_at_origin(struct draft *d)
+{
+    return restate(d, true);
 }
 
 // ---------------------------------------------------------------- geometry

@@ -50,6 +50,10 @@ static void put_lights(struct jwriter *w, const struct relume_manifest *m)
         jgap(w, "\n    ");
         jput_text(w, "falloff", "none");
     }
+    if (m->positions && !m->no_falloff && m->intensities_at_origin) {
+        jgap(w, "\n    ");
+        jput_text(w, "intensities_at", "origin");
+    }
     close_lines(w, "\n  ");
 }
 

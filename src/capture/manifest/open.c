@@ -204,7 +204,9 @@ static relume_status check_discs(const relume_capture *c, const struct relume_lo
 // Fills what follows from the images, whose size and transfer are known.
 static relume_status settle(relume_capture *c, const struct relume_capture_params *p)
 {
-    relume_status status = check_discs(c, p->log);
+    relume_status status = draft_state_at_origin(&c->draft);
+    if (!status)
+        status = check_discs(c, p->log);
     if (!status)
         status = image_cache_create(&c->cache, c->draft.m.views * c->draft.m.lights, p->keep_bytes,
                                     p->scratch && p->keep_bytes ? c->limits.max_memory / 2 : 0,

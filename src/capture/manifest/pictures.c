@@ -86,6 +86,7 @@ static relume_status copy_manifest(struct draft *d, const struct relume_manifest
                                     .slabs = m->slabs,
                                     .lights = m->lights,
                                     .no_falloff = m->no_falloff,
+                                    .intensities_at_origin = m->intensities_at_origin,
                                     .views = m->views ? m->views : 1};
     d->has_window = !is_zero(&m->geometry);
     if (!d->has_window)

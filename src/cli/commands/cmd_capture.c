@@ -14,7 +14,8 @@ struct capture_options {
     struct crop crop;
     const char *target, *target_values;
     enum { ALIGN_AUTO, ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
-    bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
+    bool force, json, skip_bad, matte, near, distant, refine_lights, refine_brightness, integrable,
+        radial;
     struct points ball;
     struct texts ball_photos, flat;
     int balls, frames;
@@ -40,7 +41,8 @@ CROP_OPTION,
     GROUP("finding the lights"),
     POINTS("--ball", ball, "x,y,r",
            "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
-    INT("--balls", balls, "N", "number of balls to look for; default: 1", 1, 16),
+    INT("--balls", balls, "N",
+        "number of balls to look for; default: all mirror balls, 1 matte one", 1, 16),
     FILES("--ball-photos", ball_photos, "PATH...",
           "separate photographs of the ball: a folder, or files up to the next option"),
     TRANSFER("--ball-transfer", ball_transfer,
@@ -53,6 +55,8 @@ CROP_OPTION,
     FLAG("--near", near,
          "the lamps stand near: find their positions by two balls or more, or take those of "
          "--lights"),
+    FLAG("--distant", distant,
+         "directions of lights even where two balls show that lamps are near"),
     NUMBER("--ball-z", ball_z, "Z",
            "height of the balls' middle over the plane z = 0, world units; default: 0", -1000,
            1000),
@@ -122,6 +126,7 @@ static struct relume_acquire_params read_options(const struct capture_options *o
         .force = o->force,
         .lights = o->lights,
         .near = o->near,
+        .distant = o->distant,
         .ball = (const double(*)[3])o->ball.point,
         .balls = o->ball.count ? o->ball.count : o->balls,
         .matte = o->matte,

@@ -397,6 +397,7 @@ static relume_status write_manifest(struct synth *s)
         .lights = s->p.light_count,
         .directions = s->p.near ? towards : s->p.lights,
         .positions = s->p.near ? s->p.lights : NULL,
+        .intensities_at_origin = true,
         .views = s->views,
         .view = s->view,
     };

@@ -281,6 +281,8 @@ static relume_status fit(struct acquisition *s, const relume_capture *capture)
                   relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     if (status == RELUME_EUNFIT)  // the lights do not allow it; that has been said
         return RELUME_OK;
+    if (!status && s->p.lights)
+        status = acquire_check_relief(s);
     if (!status)
         status = name_outliers(s);
     if (!status && mean_miss(&out->photometric) > CONTRADICTION)

@@ -43,6 +43,7 @@ enum acquire_alike {
     ALIKE_UNALIGNED,
     ALIKE_RIM,
     ALIKE_TWO,
+    ALIKE_STRAY,
     ALIKE_MISFIT,
     ALIKE_KINDS
 };
@@ -76,7 +77,8 @@ struct acquisition {
     struct relume_image mean, peak;
     struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
-    bool still;  // reflections that never move are left out of the balls
+    bool still;      // reflections that never move are left out of the balls
+    bool witnessed;  // a ball in the photographs agrees with the list of lights
     struct alike alike[ALIKE_KINDS];
 };
 
@@ -151,11 +153,17 @@ relume_status acquire_load_balls(struct relume_image *out, const struct acquisit
 relume_status acquire_seek_tables(struct acquisition *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
 relume_status acquire_find_lights(struct acquisition *s);
+// Compares the lights of a list with those that balls in the photographs show: warns of single
+// ones that differ. RELUME_EUNFIT where the list is that of other axes or in another order,
+// RELUME_ENOMEM.
+relume_status acquire_ask_balls(struct acquisition *s);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
 bool acquire_has_poses(const char *path);
 relume_status acquire_lights_from_poses(struct acquisition *s);
 // out->photometric by the small photographs; an input status, RELUME_EUNFIT.
 relume_status acquire_fit_small(struct acquisition *s, const relume_capture *capture);
+// Warns where the slopes of the surface are those of lights with another axis. RELUME_ENOMEM.
+relume_status acquire_check_relief(struct acquisition *s);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);
 

@@ -99,6 +99,7 @@ static relume_status fill_result(struct acquisition *s)
             .shift = {from->shift[0], from->shift[1]},
             .light = from->light,
             .sigma_deg = from->sigma_deg,
+            .outlier = from->misfit,
         };
         if (!out->photo[i].path)
             return RELUME_ENOMEM;
@@ -283,9 +284,9 @@ static relume_status fit(struct acquisition *s, const relume_capture *capture)
         return RELUME_OK;
     if (!status && s->p.lights)
         status = acquire_check_relief(s);
-    if (!status)
+    if (!status && !s->judged)
         status = name_outliers(s);
-    if (!status && mean_miss(&out->photometric) > CONTRADICTION)
+    if (!status && !s->judged && mean_miss(&out->photometric) > CONTRADICTION)
         status = acquire_warn(
             s,
             "the photographs do not fit the lights: %.0f %% brightness error; wrong order, lamps "
@@ -320,6 +321,10 @@ static relume_status fill_folder(struct acquisition *s)
         status = acquire_find_lights(s);
     if (!status)
         status = acquire_whiten(s);
+    if (!status)
+        status = acquire_judge(s);
+    if (!status)
+        status = acquire_check_blacks(s);
     if (!status)
         status = fill_result(s);
     if (!status)

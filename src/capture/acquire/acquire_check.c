@@ -42,17 +42,21 @@ static float similarity(const struct acquisition *s, int i)
     return (float)median(found, n);
 }
 
-static relume_status check_scene(struct acquisition *s)
+static void measure_similarity(struct acquisition *s)
+{
+    for (int i = 0; i < s->shots; i++)
+        s->shot[i].similarity = similarity(s, i);
+}
+
+relume_status acquire_name_scenes(struct acquisition *s)
 {
     double *all = mem_array((size_t)s->shots, sizeof *all);
     if (!all)
         return RELUME_ENOMEM;
     int known = 0;  // of others nothing can be said: pictures without edges, numbers too large
-    for (int i = 0; i < s->shots; i++) {
-        s->shot[i].similarity = similarity(s, i);
+    for (int i = 0; i < s->shots; i++)
         if (isfinite(s->shot[i].similarity))
             all[known++] = (double)s->shot[i].similarity;
-    }
     const double usual = median(all, known);
     mem_free(all);
     relume_status status = RELUME_OK;
@@ -108,8 +112,11 @@ static relume_status check_focus(struct acquisition *s)
 
 relume_status acquire_check_pictures(struct acquisition *s)
 {
-    relume_status status = check_scene(s);
-    if (!status)
+    measure_similarity(s);
+    relume_status status = RELUME_OK;
+    if (!acquire_can_judge(s))
+        status = acquire_name_scenes(s);
+    if (!status && !acquire_can_judge(s))
         status = check_focus(s);
     int full = 0;
     for (int i = 0; !status && i < s->shots; i++) {

@@ -134,7 +134,7 @@ static bool shows_lamp(const struct relume_ball_light *l, bool matte)
            (matte ? l->sigma_deg < UNSURE : l->spread_deg < TOO_WIDE);
 }
 
-// Most round things show no lamp in the first photographs; the others are not looked at.
+// Most round things show no lamp in the first photographs; these are skipped.
 static relume_status promises(bool *out, const struct witness *w, const struct relume_ball *ball,
                               bool matte)
 {

@@ -174,9 +174,9 @@ bool acquire_can_judge(const struct acquisition *s);
 relume_status acquire_judge(struct acquisition *s);
 // Warns of light that belongs to no lamp. RELUME_ENOMEM.
 relume_status acquire_check_blacks(struct acquisition *s);
-// Names photographs whose edges are not those of the others.
+// Names photographs with other edges than most.
 relume_status acquire_name_scenes(struct acquisition *s);
-// Warns where the slopes of the surface are those of lights with another axis. RELUME_ENOMEM.
+// Warns where the slopes of the surface belong to lights with another axis. RELUME_ENOMEM.
 relume_status acquire_check_relief(struct acquisition *s);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);

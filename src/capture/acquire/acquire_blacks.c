@@ -1,10 +1,10 @@
 // acquire_blacks.c - light that belongs to no lamp: haze, a lit room, a black level not taken off
 //
-// Where even the darkest percent of all photographs is grey, no shadow is deep, and a matte pixel's
-// value is affine in the light's direction: what is left without a light is the intercept. Only the
-// lower half of the lights counts, whose gloss does not reach the camera. A pale board under high
-// lamps is as bright throughout, but has no intercept. Where the lights do not tell, blacks that
-// end at one value do.
+// Where even the darkest percent of all photographs is grey, no shadow is deep. A matte pixel's
+// value is then affine in the light's direction, and its intercept is what it shows without a
+// light. Only the lower half of the lights counts, whose gloss does not reach the camera. A pale
+// board under high lamps is as bright throughout, but has no intercept. Where the lights do not
+// tell, blacks that end at one value do.
 #include "capture/acquire/acquire.h"
 
 #include "core/base/memory.h"
@@ -47,7 +47,8 @@ static bool weigh_intercept(const struct acquisition *s, double *weight)
     const double highest = fmax(quantile(weight, (size_t)s->shots, 0.5), weight[LEAST_SHOTS - 1]);
     for (int i = 0; i < s->shots; i++) {
         unknowns(u, direction_of(s, i));
-        for (int k = 0; u[3] <= highest && k < UNKNOWNS * UNKNOWNS; k++)
+        const bool counts = u[3] <= highest && !s->shot[i].misfit;
+        for (int k = 0; counts && k < UNKNOWNS * UNKNOWNS; k++)
             m[k] += u[k / UNKNOWNS] * u[k % UNKNOWNS];
     }
     for (int k = 0; k < UNKNOWNS; k++)
@@ -57,7 +58,8 @@ static bool weigh_intercept(const struct acquisition *s, double *weight)
     for (int i = 0; i < s->shots; i++) {
         unknowns(u, direction_of(s, i));
         weight[i] = 0.0;
-        for (int k = 0; u[3] <= highest && k < UNKNOWNS; k++)
+        const bool counts = u[3] <= highest && !s->shot[i].misfit;
+        for (int k = 0; counts && k < UNKNOWNS; k++)
             weight[i] += first[k] * u[k];
         squares += weight[i] * weight[i];
     }

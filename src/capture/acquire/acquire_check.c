@@ -11,8 +11,8 @@
 #include <stdio.h>
 
 enum { PAIRS = 5, GRID = 1500 };
-static const double SIMILAR = 0.35, UNLIKE = 0.5;  // similarity: of one scene; share of the others'
-static const float BLURRED = 0.35f;                // of the others' fine detail
+static const double SIMILAR = 0.35, UNLIKE = 0.5;  // similarity: of one scene; share of the usual
+static const float BLURRED = 0.35f;                // of the usual fine detail
 static const double LEAST_DETAIL = 2e-3;           // mean square of the logarithm's differences
 static const float SATURATED = 0.02f, DARK = 0.999f;
 static const double FLAT = 0.004;   // least eigenvalue of the directions' mean square

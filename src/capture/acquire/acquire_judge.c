@@ -1,13 +1,12 @@
 // acquire_judge.c - photographs that contradict those under similar lights
 //
-// Each photograph is predicted from all others by interpolation over the lights (neighbours.h),
-// which follows gloss and shadows as no law of reflection does, and compared in three ways. The
-// light that explains it best may be elsewhere: lines of the list are exchanged. In coarse blocks
-// it may be brighter or darker: another exposure, a lamp of other power. Some blocks may differ
-// from the rest: a shadow, stray light, another scene. How much photographs differ anyway is told
-// by the others of the same capture, over the deviation that the distances of their lights predict.
-// The worst one is left out and the others are judged again, since it spoils the prediction of
-// those around it.
+// Each photograph is predicted from the rest by interpolation over the lights (neighbours.h), which
+// follows gloss and shadows as no law of reflection does, and compared in three ways. The light
+// that explains it best may be elsewhere: lines of the list are exchanged. In coarse blocks it may
+// be brighter or darker: another exposure, a lamp of other power. Some blocks may differ from most:
+// a shadow, stray light, another scene. Thresholds scale with the median difference in the same
+// capture, over the deviation that the distances of the lights predict. The worst photograph is
+// left out, since it spoils the prediction around it, and all are judged again.
 #include "capture/acquire/acquire.h"
 
 #include "capture/acquire/neighbours.h"
@@ -31,16 +30,16 @@ static const double GRAZING = 0.12;               // z: lights below show little
 static const double EXPOSURE = 0.5, PARTS = 0.7;  // stops
 static const double UNUSUAL_EXPOSURE = 5.0, UNUSUAL_PARTS = 4.0;  // times the median
 static const double LEAST_DETAIL = 2e-3;  // mean square of the logarithm's differences
-// Logarithm of the detail that is missing: 0.1 to 0.4 at most on sound real captures, 1.1 of a made
-// one; 1.4 and more after a Gaussian blur of 1.5 pixels.
+// Logarithm of the missing detail: at most 0.4 on sound real captures and 1.1 on a made one, 1.4
+// and more after a Gaussian blur of 1.5 pixels.
 static const double BLURRED = 0.6, UNUSUAL_BLUR = 6.0;  // ...; times the median
 static const double ELSEWHERE = 25.0;                   // degrees
 static const double BETTER = 0.6;       // of the difference that is left under the light elsewhere
 static const double EVEN = 0.01;        // variation of an even picture, at most
 static const double UNEXPLAINED = 1.2;  // of a photograph's own variation: it is of something else
-static const double UNLIKE = 0.5;       // share of the others' similarity
+static const double UNLIKE = 0.5;       // share of the usual similarity
 static const float DARK = 0.999f;       // share of the pixels
-static const double OTHER = 0.5;        // the same, of one whose edges are not those of the others
+static const double OTHER = 0.5;        // the same, of one with unlike edges
 
 struct judge {
     struct acquisition *s;

@@ -1,9 +1,9 @@
 // acquire_relief.c - the slopes of the surface tell which axis of a list of lights is mirrored
 //
-// Slopes (p, q) that photographs give under lights turned or mirrored about the axis of view are
-// those of the surface, turned or mirrored alike; the curl dp/dy - dq/dx of a surface of heights
-// vanishes only as it is (as in integrable.h; Belhumeur, Kriegman, Yuille 1999). A half turn only
-// changes the sign of the curl: the relief is inverted, and nothing in the photographs says so.
+// Lights that are turned or mirrored about the axis of view turn or mirror the slopes (p, q) alike.
+// The curl dp/dy - dq/dx of a surface of heights vanishes only as it is (as in integrable.h;
+// Belhumeur, Kriegman, Yuille 1999). A half turn only changes the sign of the curl: the relief is
+// inverted, and nothing in the photographs says so.
 #include "capture/acquire/acquire.h"
 
 #include "core/base/memory.h"
@@ -66,8 +66,7 @@ static void sum_products(const struct relief *r, double most, double gram[16])
     }
 }
 
-// Mean square of the curl of slopes turned by an angle, mirrored in y before: p' = c p - s q and
-// q' = s p + c q on axes x' and y' that are those of the picture.
+// Sum of the squared curl of slopes that are mirrored in y, where `mirrored`, and then turned.
 static double curl_of(const double gram[16], double degrees, bool mirrored)
 {
     const double c = cos(degrees * M_PI / 180.0), s = sin(degrees * M_PI / 180.0);

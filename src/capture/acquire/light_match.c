@@ -1,9 +1,9 @@
 // light_match.c - which list of lights a ball shows
 //
 // A ball proves a list wrong only where it shows the same lights under other axes or in another
-// order, to a few degrees: what merely disagrees may be a round thing that is no mirror. Lists are
-// compared under all 48 signed permutations of their axes, turned in the plane of the picture,
-// mirrored and turned, and in the order that is nearest to what the ball shows.
+// order, to a few degrees. A round thing that merely disagrees may be no mirror. Lists are
+// compared under all 48 signed permutations of their axes. They are turned in the plane of the
+// picture, mirrored or not, and put in the order that is nearest to the directions of the ball.
 #include "capture/acquire/light_match.h"
 
 #include "core/base/memory.h"

@@ -23,11 +23,11 @@ struct light_match {
 };
 
 // Compares n lights of a list with unit directions seen[n]; zero vectors there were not seen.
-// Lights that stand near are seen from the ball at other angles than from the object; one common
-// offset, which is estimated, accounts for that. With `near` list[n] holds positions less that of
-// the ball, which is `ball`. `sigma` is the usual error of what the ball shows, degrees.
-// angle[n] is filled with what is left, NAN where not seen; partner[n] with the light of the list
-// that is nearest to what was seen, -1 where not seen or farther off than lights are apart.
+// A ball sees near lights at other angles than the object does. One common offset accounts for
+// that. With `near` lights list[n] holds positions, and `ball` the position of the ball; NULL
+// otherwise. `sigma` is the usual error of the ball's directions, degrees. The remaining angles
+// fill angle[n]. The nearest lights of the list fill partner[n]. Both are NAN and -1 where a light
+// was not seen.
 void light_match(struct light_match *out, double *angle, int *partner, const vec3 *list,
                  const vec3 *seen, int n, double sigma, const vec3 *ball);
 

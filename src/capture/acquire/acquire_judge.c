@@ -34,6 +34,7 @@ static const double LEAST_DETAIL = 2e-3;  // mean square of the logarithm's diff
 // and more after a Gaussian blur of 1.5 pixels.
 static const double BLURRED = 0.6, UNUSUAL_BLUR = 6.0;  // ...; times the median
 static const double ELSEWHERE = 25.0;                   // degrees
+static const double NEIGHBOURS = 1.4;                   // times the angle to the nearest light
 static const double BETTER = 0.6;       // of the difference that is left under the light elsewhere
 static const double EVEN = 0.01;        // variation of an even picture, at most
 static const double UNEXPLAINED = 1.2;  // of a photograph's own variation: it is of something else
@@ -248,6 +249,7 @@ static vec3 grid_direction(int k)
 struct explanation {
     double left, best;  // under its own light, and under the best one
     double angle;       // between both, degrees
+    double apart;       // from its own light to the nearest one, degrees
     int nearest;        // of the photographs, to the best one
 };
 
@@ -265,8 +267,11 @@ static struct explanation search(const struct judge *j, int i)
         }
     }
     e.angle = vec3_angle(at, j->direction[i]) * 180.0 / M_PI;
+    e.apart = 180.0;
     double least = INFINITY;
     for (int k = 0; k < j->n; k++) {
+        if (k != i)
+            e.apart = fmin(e.apart, vec3_angle(j->direction[k], j->direction[i]) * 180.0 / M_PI);
         const double angle = vec3_angle(at, j->direction[k]);
         if (k != i && angle < least) {
             least = angle;
@@ -296,7 +301,7 @@ static relume_status find_elsewhere(struct judge *j)
         int found = -1;
         for (int i = 0; i < j->n; i++) {
             const struct explanation e = search(j, i);
-            if (e.angle > ELSEWHERE && e.best < BETTER * e.left &&
+            if (e.angle > fmax(ELSEWHERE, NEIGHBOURS * e.apart) && e.best < BETTER * e.left &&
                 (found < 0 || e.best * clearest.left < clearest.best * e.left)) {
                 clearest = e;
                 found = i;

@@ -102,6 +102,7 @@ static relume_status fill_result(struct acquisition *s)
             .shift = {from->shift[0], from->shift[1]},
             .light = from->light,
             .sigma_deg = from->sigma_deg,
+            .outlier = from->misfit,
         };
         if (!out->photo[i].path)
             return RELUME_ENOMEM;
@@ -336,6 +337,8 @@ static relume_status name_outliers(struct acquisition *s)
 relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
+    if (!s->dir && s->judged && s->witnessed)  // what the surface could say has been said
+        return RELUME_OK;
     relume_status status =
         !acquire_keeps_surface(s) && s->width > s->shot[0].small.width
             ? acquire_fit_small(s, capture)
@@ -344,9 +347,11 @@ relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
                   relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     if (status == RELUME_EUNFIT)  // the lights do not allow it; that has been said
         return RELUME_OK;
-    if (!status)
+    if (!status && s->p.lights)
+        status = acquire_check_relief(s);
+    if (!status && !s->judged)
         status = name_outliers(s);
-    if (!status && mean_miss(&out->photometric) > CONTRADICTION)
+    if (!status && !s->judged && mean_miss(&out->photometric) > CONTRADICTION)
         status = acquire_warn(
             s,
             "the photographs do not fit the lights: %.0f %% brightness error; wrong order, lamps "
@@ -383,6 +388,10 @@ relume_status acquire_look(struct acquisition *s)
         status = acquire_leave_black_out(s);
     if (!status)
         status = acquire_whiten(s);
+    if (!status)
+        status = acquire_judge(s);
+    if (!status)
+        status = acquire_check_blacks(s);
     if (!status)
         status = acquire_crop(s);
     if (!status)

@@ -33,6 +33,8 @@ struct shot {
     vec3 direction, position;
     float intensity[3];
     double position_sigma;
+    bool misfit;   // contradicts its light
+    bool strange;  // of another scene
 };
 enum { SHOT_SMALL = 168 };
 
@@ -45,8 +47,11 @@ enum acquire_alike {
     ALIKE_UNALIGNED,
     ALIKE_RIM,
     ALIKE_TWO,
+    ALIKE_STRAY,
     ALIKE_MISFIT,
     ALIKE_POWER,
+    ALIKE_EXPOSURE,
+    ALIKE_PARTS,
     ALIKE_KINDS
 };
 enum { SHOOT_FEW = 3 };  // said one by one
@@ -89,7 +94,9 @@ struct acquisition {
     struct relume_image mean, peak;
     struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
-    bool still;  // reflections that never move are left out of the balls
+    bool still;      // reflections that never move are left out of the balls
+    bool judged;     // photographs were compared with those under similar lights
+    bool witnessed;  // a ball in the photographs agrees with the list of lights
     struct alike alike[ALIKE_KINDS];
 };
 
@@ -195,6 +202,10 @@ relume_status acquire_load_balls(struct relume_image *out, const struct acquisit
 relume_status acquire_seek_tables(struct acquisition *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
 relume_status acquire_find_lights(struct acquisition *s);
+// Compares the lights of a list with those that balls in the photographs show: warns of single
+// ones that differ. RELUME_EUNFIT where the list has other axes or another order,
+// RELUME_ENOMEM.
+relume_status acquire_ask_balls(struct acquisition *s);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
 bool acquire_has_poses(const char *path);
 relume_status acquire_lights_from_poses(struct acquisition *s);
@@ -203,6 +214,17 @@ relume_status acquire_fit_small(struct acquisition *s, const relume_capture *cap
 // Leaves out photographs that are black, though their light stands above the object: misfires.
 // Light from the side and from behind may show nothing. RELUME_EUNFIT when fewer than 3 are left.
 relume_status acquire_leave_black_out(struct acquisition *s);
+// Returns whether there are enough photographs to compare them with those under similar lights.
+bool acquire_can_judge(const struct acquisition *s);
+// Names photographs that contradict those under similar lights, and lights in another order.
+// RELUME_ENOMEM.
+relume_status acquire_judge(struct acquisition *s);
+// Warns of light that belongs to no lamp. RELUME_ENOMEM.
+relume_status acquire_check_blacks(struct acquisition *s);
+// Names photographs with other edges than most.
+relume_status acquire_name_scenes(struct acquisition *s);
+// Warns where the slopes of the surface belong to lights with another axis. RELUME_ENOMEM.
+relume_status acquire_check_relief(struct acquisition *s);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);
 

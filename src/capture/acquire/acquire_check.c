@@ -11,8 +11,8 @@
 #include <stdio.h>
 
 enum { PAIRS = 5, GRID = 1500 };
-static const double SIMILAR = 0.35, UNLIKE = 0.5;  // similarity: of one scene; share of the others'
-static const float BLURRED = 0.35f;                // of the others' fine detail
+static const double SIMILAR = 0.35, UNLIKE = 0.5;  // similarity: of one scene; share of the usual
+static const float BLURRED = 0.35f;                // of the usual fine detail
 static const double LEAST_DETAIL = 2e-3;           // mean square of the logarithm's differences
 static const float SATURATED = 0.02f, DARK = 0.999f;
 static const double FLAT = 0.004;   // least eigenvalue of the directions' mean square
@@ -42,17 +42,21 @@ static float similarity(const struct acquisition *s, int i)
     return (float)median(found, n);
 }
 
-static relume_status check_scene(struct acquisition *s)
+static void measure_similarity(struct acquisition *s)
+{
+    for (int i = 0; i < s->shots; i++)
+        s->shot[i].similarity = similarity(s, i);
+}
+
+relume_status acquire_name_scenes(struct acquisition *s)
 {
     double *all = mem_array((size_t)s->shots, sizeof *all);
     if (!all)
         return RELUME_ENOMEM;
     int known = 0;  // of others nothing can be said: pictures without edges, numbers too large
-    for (int i = 0; i < s->shots; i++) {
-        s->shot[i].similarity = similarity(s, i);
+    for (int i = 0; i < s->shots; i++)
         if (isfinite(s->shot[i].similarity))
             all[known++] = (double)s->shot[i].similarity;
-    }
     const double usual = median(all, known);
     mem_free(all);
     relume_status status = RELUME_OK;
@@ -120,8 +124,11 @@ static void say_outside(const struct acquisition *s)
 
 relume_status acquire_check_pictures(struct acquisition *s)
 {
-    relume_status status = check_scene(s);
-    if (!status)
+    measure_similarity(s);
+    relume_status status = RELUME_OK;
+    if (!acquire_can_judge(s))
+        status = acquire_name_scenes(s);
+    if (!status && !acquire_can_judge(s))
         status = check_focus(s);
     int full = 0;
     say_outside(s);

@@ -64,12 +64,13 @@ static relume_status count_ends(struct shot *shot, const struct relume_image *im
     return status;
 }
 
-// For registration, before the photograph is moved by it.
+// For registration, before the photograph is moved by it, and for finding balls that a list of
+// lights is compared with.
 static relume_status keep_luma(struct acquisition *s, struct shot *shot,
                                const struct relume_image *image)
 {
     struct relume_image small;
-    if (s->again || s->p.no_registration)
+    if (s->again || (s->p.no_registration && !s->p.lights))
         return RELUME_OK;
     relume_status status = shrink(&small, image, acquire_luma_side(s->photographs.count));
     if (status)
@@ -301,7 +302,7 @@ relume_status acquire_read(struct acquisition *s)
         status = log_fail(s->p.log, RELUME_EUNFIT, "%d photographs; expected at least 3", s->shots);
     if (!status && !s->p.no_registration)
         status = acquire_register(s, &moved);
-    for (int i = 0; i < s->shots; i++)
+    for (int i = 0; i < s->shots && !s->p.lights; i++)
         relume_image_destroy(&s->shot[i].luma);
     if (!status && moved) {
         forget(s);

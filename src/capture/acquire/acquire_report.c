@@ -165,8 +165,16 @@ static void put_sphere(struct report *r)
     fputs("<figure>", r->f);
     fputs(svg, r->f);
     fputs("<figcaption>the lights as seen from the camera; pale discs: twice the estimated error; "
-          "red: the widest gap, and where lights should be added</figcaption></figure>\n",
+          "red: the widest gap, and where lights should be added",
           r->f);
+    if (r->s->witnessed)
+        fputs("; the list of lights agrees with the ball in the photographs", r->f);
+    else if (r->s->p.lights)
+        fputs(
+            "; no ball confirms the list of lights: if x and y are both negated in it, the relief "
+            "is inverted, and the photographs cannot tell",
+            r->f);
+    fputs("</figcaption></figure>\n", r->f);
     mem_free(svg);
 }
 

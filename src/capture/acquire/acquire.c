@@ -214,8 +214,7 @@ relume_status acquire_load_mask(struct relume_image *out, const struct acquisiti
     if (!s->p.mask)
         return RELUME_OK;
     relume_status status = relume_image_load(
-        out, s->p.mask,
-        relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
+        out, s->p.mask, relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
     if (!status && (out->width != s->whole[0] || out->height != s->whole[1]))
         status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
                           s->p.mask, out->width, out->height, s->whole[0], s->whole[1]);

@@ -96,6 +96,7 @@ struct acquisition {
     int summed;
     bool still;      // reflections that never move are left out of the balls
     bool judged;     // photographs were compared with those under similar lights
+    bool turned;     // the lights of the list were turned by `orientation`
     bool witnessed;  // a ball in the photographs agrees with the list of lights
     struct alike alike[ALIKE_KINDS];
 };
@@ -206,6 +207,8 @@ relume_status acquire_find_lights(struct acquisition *s);
 // ones that differ. RELUME_EUNFIT where the list has other axes or another order,
 // RELUME_ENOMEM.
 relume_status acquire_ask_balls(struct acquisition *s);
+// Turns the lights as a photograph of that EXIF orientation is turned.
+void acquire_turn_lights(struct acquisition *s, int orientation);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
 bool acquire_has_poses(const char *path);
 relume_status acquire_lights_from_poses(struct acquisition *s);

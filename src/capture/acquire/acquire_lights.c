@@ -755,22 +755,29 @@ static relume_status take_lights(struct acquisition *s, const struct relume_capt
     return status;
 }
 
-// Directions that came with the files of the photographs are those of the picture as it lies there.
-static void turn_lights(struct acquisition *s)
+void acquire_turn_lights(struct acquisition *s, int orientation)
 {
     for (int i = 0; i < s->shots; i++) {
         struct shot *shot = &s->shot[i];
         double d[] = {shot->direction.x, shot->direction.y};
         double p[] = {shot->position.x, shot->position.y};
-        photograph_turn_vector(d, s->orientation);
-        photograph_turn_vector(p, s->orientation);
+        photograph_turn_vector(d, orientation);
+        photograph_turn_vector(p, orientation);
         shot->direction = vec3_of(d[0], d[1], shot->direction.z);
         shot->position = vec3_of(p[0], p[1], shot->position.z);
     }
-    if (s->orientation > 1)
-        log_line(s->p.log, RELUME_NOTE,
-                 "%s: its lights are turned with the photographs (EXIF orientation %d)",
-                 s->p.lights, s->orientation);
+}
+
+// Directions that came with the files of the photographs are those of the picture as it lies there.
+static void turn_listed(struct acquisition *s)
+{
+    if (s->orientation <= 1)
+        return;
+    acquire_turn_lights(s, s->orientation);
+    s->turned = true;
+    log_line(s->p.log, RELUME_NOTE,
+             "%s: its lights are turned with the photographs (EXIF orientation %d)", s->p.lights,
+             s->orientation);
 }
 
 // Positions look like directions that are not of unit length.
@@ -792,7 +799,7 @@ static void take_listed(struct acquisition *s)
             s->shot[i].intensity[c] = 1.0f;
     }
     if (s->listed->turns)
-        turn_lights(s);
+        turn_listed(s);
 }
 
 static relume_status lights_from_file(struct acquisition *s)
@@ -811,7 +818,7 @@ static relume_status lights_from_file(struct acquisition *s)
     if (!status)
         status = take_lights(s, &list.lights, order);
     if (!status && by_name && is_lp(s->p.lights))
-        turn_lights(s);
+        turn_listed(s);
     if (!status)
         mention_near(s, &list);
     mem_free(order);

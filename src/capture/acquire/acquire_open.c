@@ -20,8 +20,8 @@
 static bool is_changed(const struct acquisition *s, const struct shot *shot)
 {
     const bool follows_profile = shot->notes.profile && s->p.transfer.curve == RELUME_CURVE_AUTO;
-    return s->out->crop[2] || follows_profile || shot->notes.orientation > 1 || s->orientation > 1 ||
-           shot->shift[0] != 0.0 || shot->shift[1] != 0.0;
+    return s->out->crop[2] || follows_profile || shot->notes.orientation > 1 ||
+           s->orientation > 1 || shot->shift[0] != 0.0 || shot->shift[1] != 0.0;
 }
 
 relume_status acquire_keep(struct acquisition *s, struct shot *shot,
@@ -51,9 +51,8 @@ relume_status acquire_kept(struct relume_image *out, const struct acquisition *s
                            const struct shot *shot)
 {
     const uint16_t *halves = shot->changed.halves;
-    const relume_status status =
-        halves ? relume_image_create(out, s->width, s->height, 3)
-               : acquire_load(out, NULL, s, shot->path, s->p.transfer);
+    const relume_status status = halves ? relume_image_create(out, s->width, s->height, 3)
+                                        : acquire_load(out, NULL, s, shot->path, s->p.transfer);
     const size_t values = status ? 0 : 3 * (size_t)out->width * (size_t)out->height;
     for (size_t i = 0; i < values; i++)
         out->data[i] = float_from_half(halves ? halves[i] : half_from_float(out->data[i]));

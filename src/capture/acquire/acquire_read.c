@@ -161,9 +161,9 @@ relume_status acquire_fetch(struct relume_image *out, const struct acquisition *
     const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     char *path = mem_format("%s/%s", outdir_path(s->dir), shot->name);
     const relume_status status =
-        path ? relume_image_load(out, path,
-                                 relume_image_params(.log = s->p.log, .transfer = linear))
-             : RELUME_ENOMEM;
+        path
+            ? relume_image_load(out, path, relume_image_params(.log = s->p.log, .transfer = linear))
+            : RELUME_ENOMEM;
     mem_free(path);
     return status;
 }

@@ -344,16 +344,42 @@ static relume_status judge(struct witness *w)
     return name_strays(w);
 }
 
+static relume_status compare(struct witness *w)
+{
+    const struct acquisition *s = w->s;
+    w->best = (struct light_match){.kind = LIGHT_MATCH_NONE};
+    for (int i = 0; i < s->shots; i++)
+        w->list[i] = s->p.near ? s->shot[i].position : s->shot[i].direction;
+    return ask_all(w);
+}
+
+// Some programs turn photographs before they look for lights: their lists fit as they are.
+static relume_status try_upright(struct witness *w)
+{
+    static const int back[] = {1, 1, 2, 3, 4, 5, 8, 7, 6};  // of EXIF orientations
+    struct acquisition *s = w->s;
+    acquire_turn_lights(s, back[s->orientation]);
+    const relume_status status = compare(w);
+    if (!status && w->best.kind == LIGHT_MATCH_SAME) {
+        log_line(s->p.log, RELUME_NOTE,
+                 "%s: by the ball its lights are those of the upright photographs; not turned",
+                 s->p.lights);
+        return RELUME_OK;
+    }
+    acquire_turn_lights(s, s->orientation);
+    return status ? status : compare(w);
+}
+
 relume_status acquire_ask_balls(struct acquisition *s)
 {
     struct witness w = {.s = s};
     if (s->shots < LEAST_SHOTS || !s->shot[0].luma.data || s->p.align)
         return RELUME_OK;
     relume_status status = create(&w);
-    for (int i = 0; !status && i < s->shots; i++)
-        w.list[i] = s->p.near ? s->shot[i].position : s->shot[i].direction;
     if (!status)
-        status = ask_all(&w);
+        status = compare(&w);
+    if (!status && s->turned && w.best.kind != LIGHT_MATCH_SAME)
+        status = try_upright(&w);
     if (!status)
         status = judge(&w);
     destroy(&w);

@@ -34,7 +34,7 @@ static const struct option options[] = {
     GROUP("input"),
     TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; default: by file"),
     TEXT("--mask", mask, "FILE", "a mask: white where the object is"),
-CROP_OPTION,
+    CROP_OPTION,
     INT("--frames", frames, "N", "a film of a moving lamp: frames to keep; default: 60", 3,
         FILM_FRAMES_MOST),
     FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),

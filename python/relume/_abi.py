@@ -43,7 +43,7 @@ struct relume_buffer { void *data; size_t size, room; bool whole; };
 struct relume_image { int width, height; int channels; void *data; size_t mapped; };
 struct relume_transfer { int curve; float gamma; void *response; };
 struct relume_image_params { size_t struct_size; void *log; struct relume_transfer transfer; void *limits;
-    int channels; bool half; int threads; void *reader; void *writer; bool profile; };
+    int channels; bool half; int threads; void *reader; void *writer; bool profile; int bits; bool codes; };
 struct relume_pose { struct relume_vec3 origin; struct relume_vec3 axis[3]; };
 struct relume_geometry { int projection; double window_min[2], window_max[2]; bool perspective;
     double camera_z; double uv_z, st_z; double st_min[2], st_max[2]; struct relume_pose pose;

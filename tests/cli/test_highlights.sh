@@ -125,3 +125,18 @@ sed 's/view0000\.highlights/view0000.othersorts/' moves.exr >older.exr
 "$RELUME" relight older.exr -o older.png --light "$sun" -q
 check 'programs that do not know the part show what fades' cmp older.png fades.png
 finish
+
+# ---- what a mask leaves out stays black, also where highlights move
+"$sphere" masked --size 64 --lights 40 --hemisphere --shade phong --format png || exit 1
+"$mkimage" plane masked/view00/light0000.png mask.exr 1
+for at in '2 2' '32 32' '40 20'; do
+    # shellcheck disable=SC2086
+    "$mkimage" poke mask.exr poked.exr $at 0 && mv poked.exr mask.exr
+done
+relume capture masked/view00 --lights masked/dirs.lp --mask mask.exr -o masked_capture
+expect_ok 'a masked capture with highlights' - "$RELUME" encode masked_capture -o masked.exr --highlights yes
+relume relight masked.exr -o masked.pfm --light 'dir 0 0 1'
+for at in '2 2' '32 32' '40 20'; do
+    # shellcheck disable=SC2086
+    below "masked pixel $at is black" "$("$mkimage" read masked.pfm $at | cut -d' ' -f1)" 1e-6
+done

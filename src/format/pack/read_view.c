@@ -198,6 +198,23 @@ relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, in
     return status;
 }
 
+// What the mask leaves out shows no highlight.
+static relume_status mask_gloss(struct relume_image *gloss, relume_pack *pack, int view)
+{
+    struct relume_image mask;
+    const relume_status status = relume_pack_mask(&mask, pack, view);
+    const size_t pixels = (size_t)gloss->width * (size_t)gloss->height;
+    for (size_t i = 0; !status && mask.data && i < pixels; i++)
+        if (!(mask.data[i] > 0.5f)) {
+            float *p = gloss->data + RELUME_GLOSS_CHANNELS * i;
+            p[RELUME_GLOSS_SHINE] = 0.0f;
+            for (int c = 0; c < 3; c++)
+                p[RELUME_GLOSS_COLOUR + c] = 0.0f;
+        }
+    relume_image_destroy(&mask);
+    return status;
+}
+
 relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack, int view)
 {
     *out = (struct relume_image){0};
@@ -209,6 +226,8 @@ relume_status relume_pack_gloss(struct relume_image *out, relume_pack *pack, int
     if (!status && !is_sound_gloss(out))
         status =
             reader_bad(pack, "gloss", "finite numbers; colours, roughness and share 0 or more");
+    if (!status)
+        status = mask_gloss(out, pack, view);
     if (status)
         relume_image_destroy(out);
     return status;

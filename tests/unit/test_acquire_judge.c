@@ -154,16 +154,6 @@ static void a_blurred_one(void **state)
     expect(&p, 1, "p17.jpg: less sharp");
 }
 
-static void one_twice(void **state)
-{
-    (void)state;
-    struct photographs p;
-    take(&p);
-    strcpy(p.shot[3].sha256, "ab");
-    strcpy(p.shot[4].sha256, "ab");
-    expect(&p, 1, "p03.jpg and p04.jpg are the same photograph");
-}
-
 static void lifted_blacks(void **state)
 {
     (void)state;
@@ -185,7 +175,6 @@ int main(void)
         cmocka_unit_test(another_order),
         cmocka_unit_test(another_scene),
         cmocka_unit_test(a_blurred_one),
-        cmocka_unit_test(one_twice),
         cmocka_unit_test(lifted_blacks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

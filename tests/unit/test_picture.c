@@ -182,6 +182,25 @@ static void fill(uint8_t *samples, int n)
         samples[i] = (uint8_t)test_random(&seed);
 }
 
+static struct picture_codes codes_of(int width, int height, int channels, const uint8_t *samples)
+{
+    return (struct picture_codes){.array = {samples, 1, width, height, channels, .halves = false}};
+}
+
+static relume_status write_png(const char *path, int width, int height, int channels,
+                               const uint8_t *samples, const struct relume_log *log)
+{
+    const struct picture_codes codes = codes_of(width, height, channels, samples);
+    return png_write(path, NULL, &codes, log);
+}
+
+static relume_status write_by_bridge(const char *path, int width, int height, int channels,
+                                     const uint8_t *samples)
+{
+    const struct picture_codes codes = codes_of(width, height, channels, samples);
+    return bridge->write_codes(path, NULL, &codes, outfile_save_to, NULL);
+}
+
 static void png_is_what_openimageio_sees(void **state)
 {
     (void)state;
@@ -191,10 +210,9 @@ static void png_is_what_openimageio_sees(void **state)
     for (int k = 0; k < 16; k++) {
         const int width = widths[k % 4], height = widths[3 - k % 4], channels = k / 4 % 2 ? 3 : 1;
         if (k < 8)
-            CHECK_OK(png_write(path_of("a.png"), NULL, width, height, channels, samples, NULL));
+            CHECK_OK(write_png(path_of("a.png"), width, height, channels, samples, NULL));
         else
-            CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, width, height, channels, samples,
-                                         NULL, 0, outfile_save_to, NULL));
+            CHECK_OK(write_by_bridge(path_of("a.png"), width, height, channels, samples));
         compare(path_of("a.png"));
         picture_reader *r;
         CHECK_OK(picture_open(&r, path_of("a.png"), NULL, NULL, NULL));
@@ -203,8 +221,7 @@ static void png_is_what_openimageio_sees(void **state)
         assert_memory_equal(back, samples, (size_t)(width * height * channels));
     }
     for (int channels = 2; channels <= 4; channels += 2) {  // alpha
-        CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, 9, 8, channels, samples, NULL, 0,
-                                     outfile_save_to, NULL));
+        CHECK_OK(write_by_bridge(path_of("a.png"), 9, 8, channels, samples));
         compare(path_of("a.png"));
     }
 }
@@ -249,13 +266,13 @@ static void png_that_is_not_plain(void **state)
     uint8_t samples[6 * 5 * 3];
     fill(samples, sizeof samples);
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-        CHECK_OK(png_write(path_of("a.png"), NULL, 6, 5, 3, samples, NULL));
+        CHECK_OK(write_png(path_of("a.png"), 6, 5, 3, samples, NULL));
         with_chunk(path_of("a.png"), chunks[i].type, chunks[i].data, chunks[i].size);
         assert_int_equal(format_of(path_of("a.png")) != NULL, chunks[i].plain);
         if (chunks[i].plain)
             compare(path_of("a.png"));
     }
-    CHECK_OK(png_write(path_of("a.png"), NULL, 6, 5, 3, samples, NULL));
+    CHECK_OK(write_png(path_of("a.png"), 6, 5, 3, samples, NULL));
     shorten(path_of("a.png"));
     assert_null(format_of(path_of("a.png")));
 }
@@ -372,7 +389,7 @@ static void damaged_rows(void **state)
     size_t size;
     picture_reader *r;
     fill(samples, sizeof samples);
-    CHECK_OK(png_write(path_of("a.png"), NULL, MOST, MOST, 3, samples, NULL));
+    CHECK_OK(write_png(path_of("a.png"), MOST, MOST, 3, samples, NULL));
     write_exr(path_of("a.exr"), (struct made){MOST, 3, false}, MOST, EXR_CODEC_ZIP, NULL);
     write_jpeg(path_of("a.jpg"), MOST, MOST, (struct kind){.channels = 3}, samples);
     static const char *const names[] = {"a.png", "a.exr", "a.jpg"};
@@ -392,7 +409,7 @@ static void damaged_rows(void **state)
     }
     struct test_log log;
     test_log_init(&log);
-    assert_int_equal(png_write("/dev/full", NULL, 6, 5, 3, samples, &log.log), RELUME_EIO);
+    assert_int_equal(write_png("/dev/full", 6, 5, 3, samples, &log.log), RELUME_EIO);
     assert_non_null(strstr(log.text, "/dev/full"));
 }
 

@@ -98,7 +98,7 @@ static void capture(struct set *s, bool leave, struct relume_acquisition *out, i
     const struct relume_acquire_params p = {
         .lights = s->lights, .no_registration = leave, .force = true};
     CHECK_OK(relume_capture_photographs(s->out, s->list, SHOTS, &p, out));
-    assert_int_equal(out->lights, SHOTS);
+    assert_int_equal(out->lights, SHOTS - (s->black > 0));  // a misfire is left out
     *count = 0;
     *text = '\0';
     for (int i = 0; i < out->warnings; i++)
@@ -210,7 +210,7 @@ static void check_still(double texture, double (*shift)[2], int black)
     take(&s);
     capture(&s, false, &out, &count, text);
     assert_int_equal(count, 0);
-    for (int i = 0; i < SHOTS; i++)
+    for (int i = 0; i < out.lights; i++)
         assert_true(out.photo[i].shift[0] == 0.0 && out.photo[i].shift[1] == 0.0);
     relume_acquisition_destroy(&out);
     test_folder_remove(s.folder);

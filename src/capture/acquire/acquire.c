@@ -20,6 +20,7 @@
 
 static const double SENSOR_MM = 36.0;      // width of the frame that focal lengths are given for
 static const double OUTLIER = 3.0;         // times what photographs usually miss
+static const double LOW = 0.1;             // z: lights below show little but rims
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
 
 relume_status acquire_drop(struct acquisition *s, int i, bool allowed, const char *format, ...)
@@ -295,26 +296,29 @@ static double mean_miss(const struct relume_photometric *p)
     return sum;
 }
 
-// A photograph that misses less than half as much by one factor shows a lamp of another power; a
-// large factor is more likely a wrong direction.
-static relume_status name_outlier(struct acquisition *s, int i, double usual)
+static relume_status name_power(struct acquisition *s, int i)
 {
-    const struct relume_photometric *p = &s->out->photometric;
-    const double miss = p->light_residual[i], gain = p->light_gain[i];
-    if (p->mended_residual[i] > 0.5 * miss || gain < 0.5 || gain > 2.0)
-        return acquire_warn_alike(
-            s, ALIKE_MISFIT, miss,
-            "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
-            "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
-            s->shot[i].path, 100.0 * miss, 100.0 * usual);
+    const double miss = s->out->photometric.light_residual[i];
+    const double gain = s->out->photometric.light_gain[i];
     return acquire_warn_alike(
         s, ALIKE_POWER, miss,
         "lamp %d (%s) is %.0f %% %s than expected; --refine-brightness measures each lamp", i + 1,
         path_name(s->shot[i].path), 100.0 * fabs(gain - 1.0), gain < 1.0 ? "dimmer" : "brighter");
 }
 
-// Photographs that miss far more than most: damaged in a way that no reader sees, taken when
-// something had moved, or under a lamp that is not as it is said to be.
+static relume_status name_misfit(struct acquisition *s, int i, double usual)
+{
+    const double miss = s->out->photometric.light_residual[i];
+    return acquire_warn_alike(
+        s, ALIKE_MISFIT, miss,
+        "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
+        "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
+        s->shot[i].path, 100.0 * miss, 100.0 * usual);
+}
+
+// Names photographs that contradict their lights. Where one factor mends each of them, lamps have
+// other powers; a large factor is more likely a wrong direction, and of two photographs that were
+// exchanged a factor may mend one.
 static relume_status name_outliers(struct acquisition *s)
 {
     const struct relume_photometric *p = &s->out->photometric;
@@ -323,13 +327,20 @@ static relume_status name_outliers(struct acquisition *s)
         return RELUME_ENOMEM;
     sort_doubles(sorted, (size_t)p->lights);
     const double usual = sorted[p->lights / 2];
-    relume_status status = RELUME_OK;
-    for (int i = 0; i < p->lights && !status; i++) {
-        s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
-        if (s->out->photo[i].outlier)
-            status = name_outlier(s, i, usual);
-    }
+    bool powers = true;
     mem_free(sorted);
+    for (int i = 0; i < p->lights; i++) {
+        const double miss = p->light_residual[i], gain = p->light_gain[i];
+        const bool outlier =
+            s->out->direction[i].z > LOW && miss > fmax(OUTLIER * usual, CONTRADICTION);
+        s->out->photo[i].outlier = outlier;
+        powers &= !outlier || (p->mended_residual[i] < fmax(2.0 * usual, 0.5 * miss) &&
+                               gain > 0.5 && gain < 2.0);
+    }
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < p->lights; i++)
+        if (s->out->photo[i].outlier)
+            status = powers ? name_power(s, i) : name_misfit(s, i, usual);
     return status;
 }
 
@@ -565,6 +576,7 @@ static relume_status list_shots(struct acquisition *s)
     s->shots = s->photographs.count;
     for (int i = 0; i < s->shots; i++) {
         s->shot[i].number = i;
+        s->shot[i].sharpness = NAN;
         s->shot[i].path = s->photographs.path[i];
         s->shot[i].ball_path = s->balls.count ? s->balls.path[i] : NULL;
     }

@@ -179,6 +179,8 @@ relume_status acquire_register(struct acquisition *s, bool *moved);
 int acquire_luma_side(int shots);
 // Moves a picture back by a shift; its border is repeated. RELUME_ENOMEM.
 relume_status acquire_move_back(struct relume_image *image, const double shift[2]);
+// Returns how many pixels along a side become one of a small photograph.
+int acquire_small_step(int width, int height);
 // Makes a small photograph, of at most SHOT_SMALL pixels a side. RELUME_ENOMEM.
 relume_status acquire_shrink(struct relume_image *out, const struct relume_image *from);
 // Crops the photographs in the folder, and the small ones, as params.crop says. RELUME_EINVAL,

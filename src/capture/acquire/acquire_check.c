@@ -154,7 +154,7 @@ relume_status acquire_leave_black_out(struct acquisition *s)
     for (int i = 0; !status && i < s->shots;) {
         const struct shot *shot = &s->shot[i];
         const vec3 d = vec3_unit(s->p.near ? shot->position : shot->direction);
-        if (shot->black > DARK && d.z > LOWEST)
+        if (shot->black > DARK && d.z > LOWEST && !shot->notes.floats)
             status = acquire_drop(s, i, true, "black; did its lamp fail?");
         else
             i++;

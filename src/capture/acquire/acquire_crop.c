@@ -90,7 +90,7 @@ static int balls_inside(const struct acquisition *s)
 
 static void mark_balls(struct map *m, const struct acquisition *s)
 {
-    const double step = (double)(s->width / m->width);
+    const double step = acquire_small_step(s->width, s->height);
     for (int b = 0; b < balls_inside(s); b++) {
         const struct relume_ball *ball = &s->out->ball[b];
         const double far = BALL * ball->radius + BLUR * step;
@@ -214,10 +214,9 @@ static relume_status find_object(struct region *out, struct map *m)
 }
 
 // In pixels of the photographs, with a margin; width 0: all.
-static void place_object(int crop[4], const struct acquisition *s, const struct map *m,
-                         const struct region *r)
+static void place_object(int crop[4], const struct acquisition *s, const struct region *r)
 {
-    const double step = (double)(s->width / m->width);
+    const double step = acquire_small_step(s->width, s->height);
     const int side =
         r->right - r->left > r->bottom - r->top ? r->right - r->left : r->bottom - r->top;
     const double margin = MARGIN * side * step;
@@ -260,7 +259,7 @@ static relume_status find_crop(struct acquisition *s, int crop[4])
     if (!status)
         status = find_object(&object, &m);
     if (!status)
-        place_object(crop, s, &m, &object);
+        place_object(crop, s, &object);
     mem_free(m.relief);
     mem_free(m.ball);
     if (!status && !crop[2])

@@ -93,11 +93,24 @@ static bool are_sorted(const struct relume_photographs *list,
     return true;
 }
 
+// A list names photographs, whatever their names say, in the order that is wanted.
+static relume_status take_listed(struct relume_photographs *out, const char *const *paths, int n)
+{
+    out->path = mem_zeroed((size_t)n, sizeof *out->path);
+    out->count = out->path ? n : 0;
+    bool good = out->path;
+    for (int i = 0; good && i < n; i++)
+        good = (out->path[i] = mem_text(paths[i])) != NULL;
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
 // Lists the photographs of the object. Photographs that were named one by one keep this order for a
 // list of lights without names, unless it is the order in which a shell sorts them.
 static relume_status list_object(struct acquisition *s, const char *const *paths, int n)
 {
     struct relume_photographs *photos = &s->photographs;
+    if (s->listed)
+        return take_listed(photos, paths, n);
     relume_status status = list(photos, paths, n, 3, s->p.log);
     if (!status)
         status = list_pages(photos, s->p.log);

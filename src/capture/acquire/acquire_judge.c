@@ -42,6 +42,13 @@ static const double UNLIKE = 0.5;       // share of the usual similarity
 static const float DARK = 0.999f;       // share of the pixels
 static const double OTHER = 0.5;        // the same, of one with unlike edges
 
+// Predicts what a light shows by all photographs together.
+struct lit {
+    double *weight;   // [n]
+    double *product;  // [n], of the photographs with the prediction
+    double square;    // of the prediction
+};
+
 struct judge {
     struct acquisition *s;
     int n;                   // photographs that are not left out
@@ -54,6 +61,8 @@ struct judge {
     size_t pixels;
     struct neighbours set;
     double *weight;                          // [n]
+    struct lit *lit;                         // [GRID + n]: lights that may explain a photograph
+    double *lit_values;                      // of these
     double *exposure, *parts, *sd, *sorted;  // [n]
 };
 
@@ -119,25 +128,32 @@ static relume_status create(struct judge *j)
 {
     struct acquisition *s = j->s;
     const size_t n = (size_t)s->shots;
-    j->all = j->n = s->shots;
+    j->all = s->shots;
     j->shot = mem_array(n, sizeof *j->shot);
     j->direction = mem_array(n, sizeof *j->direction);
     j->block = mem_zeroed(n, sizeof *j->block);
     j->gram = mem_array(n * n, sizeof *j->gram);
     j->sum = mem_zeroed(n, sizeof *j->sum);
     j->weight = mem_array(n, sizeof *j->weight);
+    j->lit = mem_array(GRID + n, sizeof *j->lit);
+    j->lit_values = mem_array((GRID + n) * n, 2 * sizeof *j->lit_values);
     j->exposure = mem_array(n, sizeof *j->exposure);
     j->parts = mem_array(n, sizeof *j->parts);
     j->sd = mem_array(n, sizeof *j->sd);
     j->sorted = mem_array(n, sizeof *j->sorted);
-    if (!j->shot || !j->direction || !j->block || !j->gram || !j->sum || !j->weight ||
-        !j->exposure || !j->parts || !j->sd || !j->sorted)
+    if (!j->shot || !j->direction || !j->block || !j->gram || !j->sum || !j->weight || !j->lit ||
+        !j->lit_values || !j->exposure || !j->parts || !j->sd || !j->sorted)
         return RELUME_ENOMEM;
     for (int i = 0; i < s->shots; i++) {
-        j->shot[i] = i;
-        j->direction[i] = direction_of(s, i);
-        fill_blocks(&s->shot[i], j->block[i], s->has_intensities);
+        const vec3 d = direction_of(s, i);
+        if (d.z < 0.0)  // light from behind shows rims, which change from light to light
+            continue;
+        j->shot[j->n] = i;
+        j->direction[j->n] = d;
+        fill_blocks(&s->shot[i], j->block[j->n++], s->has_intensities);
     }
+    if (j->n < LEAST_SHOTS)
+        return RELUME_EUNFIT;
     const relume_status status = fill_gram(j);
     return status ? status : neighbours_create(&j->set, j->direction, j->n);
 }
@@ -151,6 +167,8 @@ static void destroy(struct judge *j)
     mem_free(j->gram);
     mem_free(j->sum);
     mem_free(j->weight);
+    mem_free(j->lit);
+    mem_free(j->lit_values);
     mem_free(j->exposure);
     mem_free(j->parts);
     mem_free(j->sd);
@@ -253,19 +271,66 @@ struct explanation {
     int nearest;        // of the photographs, to the best one
 };
 
-static struct explanation search(const struct judge *j, int i)
+static vec3 lit_direction(const struct judge *j, int k)
+{
+    return k < GRID ? grid_direction(k) : j->direction[k - GRID];
+}
+
+static void light_all(struct judge *j)
+{
+    const size_t n = (size_t)j->n;
+    for (int k = 0; k < GRID + j->n; k++) {
+        struct lit *lit = &j->lit[k];
+        lit->weight = j->lit_values + 2 * n * (size_t)k;
+        lit->product = lit->weight + n;
+        lit->square = 0.0;
+        neighbours_all_weights(&j->set, lit_direction(j, k), lit->weight);
+        for (int a = 0; a < j->n; a++) {
+            double sum = 0.0;
+            for (int b = 0; b < j->n; b++)
+                sum += lit->weight[b] * product(j, a, b);
+            lit->product[a] = sum;
+            lit->square += lit->weight[a] * sum;
+        }
+    }
+}
+
+// left[GRID + n]: what left_under() returns for each of the lights.
+static void leave_under_all(const struct judge *j, int i, double *left)
+{
+    const double *q = neighbours_row(&j->set, i);
+    double own = 0.0, square = 0.0;  // products of row q with photograph i and with itself
+    for (int a = 0; a < j->n; a++) {
+        double sum = 0.0;
+        for (int b = 0; b < j->n; b++)
+            sum += q[b] * product(j, a, b);
+        own += a == i ? sum : 0.0;
+        square += q[a] * sum;
+    }
+    const double most = fmax(variation(j, i), 1e-12 + EVEN * product(j, i, i));
+    for (int k = 0; k < GRID + j->n; k++) {
+        const struct lit *lit = &j->lit[k];
+        const double part = lit->weight[i] / q[i];
+        double cross = 0.0;
+        for (int a = 0; a < j->n; a++)
+            cross += q[a] * lit->product[a];
+        const double with = lit->product[i] - part * own;
+        const double itself = lit->square - 2.0 * part * cross + part * part * square;
+        left[k] = (product(j, i, i) - fmax(with, 0.0) * with / fmax(itself, 1e-12)) / most;
+    }
+}
+
+static struct explanation search(const struct judge *j, int i, double *left)
 {
     struct explanation e = {.nearest = -1};
     vec3 at = j->direction[i];
-    e.left = e.best = left_under(j, i, at);
-    for (int k = 0; k < GRID + j->n; k++) {
-        const vec3 d = k < GRID ? grid_direction(k) : j->direction[k - GRID];
-        const double left = k - GRID == i ? INFINITY : left_under(j, i, d);
-        if (left < e.best) {
-            e.best = left;
-            at = d;
+    leave_under_all(j, i, left);
+    e.left = e.best = left[GRID + i];
+    for (int k = 0; k < GRID + j->n; k++)
+        if (k != GRID + i && left[k] < e.best) {
+            e.best = left[k];
+            at = lit_direction(j, k);
         }
-    }
     e.angle = vec3_angle(at, j->direction[i]) * 180.0 / M_PI;
     e.apart = 180.0;
     double least = INFINITY;
@@ -295,12 +360,14 @@ static relume_status name_elsewhere(struct judge *j, int i, const struct explana
 // The photographs that another light explains far better, the clearest first.
 static relume_status find_elsewhere(struct judge *j)
 {
-    relume_status status = RELUME_OK;
+    double *left = mem_array(GRID + (size_t)j->n, sizeof *left);
+    relume_status status = left ? RELUME_OK : RELUME_ENOMEM;
     for (int named = 0; !status && named < MOST_EXCHANGED && j->n > LEFT * j->all; named++) {
         struct explanation clearest = {0};
         int found = -1;
+        light_all(j);
         for (int i = 0; i < j->n; i++) {
-            const struct explanation e = search(j, i);
+            const struct explanation e = search(j, i, left);
             if (e.angle > fmax(ELSEWHERE, NEIGHBOURS * e.apart) && e.best < BETTER * e.left &&
                 (found < 0 || e.best * clearest.left < clearest.best * e.left)) {
                 clearest = e;
@@ -313,6 +380,7 @@ static relume_status find_elsewhere(struct judge *j)
         if (!status)
             status = leave_out(j, found);
     }
+    mem_free(left);
     return status;
 }
 

@@ -20,7 +20,8 @@
 static bool is_changed(const struct acquisition *s, const struct shot *shot)
 {
     const bool follows_profile = shot->notes.profile && s->p.transfer.curve == RELUME_CURVE_AUTO;
-    return s->out->crop[2] || follows_profile || shot->notes.orientation > 1 ||
+    const bool corrected = s->flats.count || s->out->target || s->p.align;
+    return s->out->crop[2] || corrected || follows_profile || shot->notes.orientation > 1 ||
            s->orientation > 1 || shot->shift[0] != 0.0 || shot->shift[1] != 0.0;
 }
 
@@ -29,6 +30,8 @@ relume_status acquire_keep(struct acquisition *s, struct shot *shot,
 {
     const size_t values = 3 * (size_t)image->width * (size_t)image->height;
     const size_t bytes = values * sizeof *shot->changed.halves;
+    if (shot->changed.halves && !shot->changed.mapped)
+        s->left_bytes += 3 * sizeof *shot->changed.halves * (size_t)s->width * (size_t)s->height;
     changed_picture_free(&shot->changed);
     if (!is_changed(s, shot))
         return RELUME_OK;
@@ -112,10 +115,8 @@ static relume_status make_capture(relume_capture **out, struct acquisition *s)
         status = acquire_describe(s, parse_manifest, &o);
     if (!status)
         status = name_files(&o);
-    for (int i = 0; !status && i < s->shots; i++) {
+    for (int i = 0; !status && i < s->shots; i++)
         files.changed[i] = s->shot[i].changed;
-        files.floats |= s->shot[i].notes.floats;
-    }
     if (!status)
         status = capture_of_files(out, &files, s->opening);
     for (int i = 0; !status && i < s->shots; i++)
@@ -246,14 +247,15 @@ relume_status relume_capture_open_photographs(relume_capture **out, const char *
     *into = (struct relume_acquisition){0};
     relume_status status = relume_capture_open(&list, path, params);
     *out = list;
-    if (!status && !is_list(list) && (a.crop_auto || a.crop[2])) {
+    const bool photographs = !status && is_list(list) && !(p.repair && list->floats);
+    if (!status && !photographs && (a.crop_auto || a.crop[2])) {
         status = log_fail(p.log, RELUME_EUNFIT,
                           "%s: a capture already; expected a list of photographs for --crop, or "
                           "relume capture --crop",
                           path);
         relume_capture_destroy(out);
     }
-    if (status || !is_list(list))
+    if (!photographs)
         return status;
     p.limits = limits_of(p.limits, p.log);
     *out = NULL;

@@ -15,11 +15,21 @@
 static const float WHITE = 0.998f, BLACK = 0.002f;
 static const float FAINT = 2e-4f;  // about one code of 8 bits in the dark
 
+static int step_for(int width, int height, int most)
+{
+    const int side = width > height ? width : height;
+    return (side + most - 1) / most;
+}
+
+int acquire_small_step(int width, int height)
+{
+    return step_for(width, height, SHOT_SMALL);
+}
+
 // Boxes of `step` x `step` pixels, so that at most `most` are left along a side.
 static relume_status shrink(struct relume_image *out, const struct relume_image *from, int most)
 {
-    const int side = from->width > from->height ? from->width : from->height;
-    const int step = (side + most - 1) / most;
+    const int step = step_for(from->width, from->height, most);
     const int w = from->width / step, h = from->height / step;
     const relume_status status = relume_image_create(out, w > 0 ? w : 1, h > 0 ? h : 1, 3);
     if (status)
@@ -309,7 +319,8 @@ relume_status acquire_read(struct acquisition *s)
         s->again = true;
         status = read_all(s);
     }
-    for (size_t i = 0; s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++) {
+    for (size_t i = 0;
+         !status && s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++) {
         s->mean.data[i] = expf(s->mean.data[i]);
         s->change.data[i] = sqrtf(s->change.data[i] / (float)s->summed);
     }

@@ -93,6 +93,8 @@ static void name_turn(char *out, size_t size, double degrees, bool mirrored)
 static relume_status compare(struct acquisition *s, const double gram[16])
 {
     const double trace = gram[0] + gram[5] + gram[10] + gram[15];
+    if (!(trace > 0.0))  // all of it is flat
+        return RELUME_OK;
     const double as_given = curl_of(gram, 0.0, false) / (0.5 * trace);
     double least = INFINITY, at = 0.0;
     bool mirrored = false;

@@ -18,12 +18,15 @@ static relume_status shrink_mask(float **out, const struct acquisition *s,
     if (status || !mask.data)
         return status;
     *out = mem_array((size_t)small->width * (size_t)small->height, sizeof **out);
-    const int step = mask.width / small->width;
+    const int step = acquire_small_step(mask.width, mask.height);
     for (int y = 0; *out && y < small->height; y++)
-        for (int x = 0; x < small->width; x++)
+        for (int x = 0; x < small->width; x++) {
+            const int at[2] = {x * step + step / 2, y * step + step / 2};
+            const int column = at[0] < mask.width ? at[0] : mask.width - 1;
+            const int row = at[1] < mask.height ? at[1] : mask.height - 1;
             (*out)[(size_t)y * (size_t)small->width + (size_t)x] =
-                mask.data[(size_t)(y * step + step / 2) * (size_t)mask.width +
-                          (size_t)(x * step + step / 2)];
+                mask.data[(size_t)row * (size_t)mask.width + (size_t)column];
+        }
     relume_image_destroy(&mask);
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }

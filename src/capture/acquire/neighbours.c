@@ -26,12 +26,15 @@ static void trend(double out[TREND], vec3 d)
 relume_status neighbours_create(struct neighbours *out, const vec3 *direction, int n)
 {
     const int m = n + TREND;
-    *out = (struct neighbours){n, direction, NULL};
+    *out = (struct neighbours){n, direction, NULL, NULL};
     if (n < LEAST)
         return RELUME_EUNFIT;
     out->inverse = mem_zeroed((size_t)m * (size_t)m, sizeof *out->inverse);
-    if (!out->inverse)
+    out->kernel = mem_array((size_t)n, sizeof *out->kernel);
+    if (!out->inverse || !out->kernel) {
+        neighbours_destroy(out);
         return RELUME_ENOMEM;
+    }
     for (int i = 0; i < n; i++) {
         double t[TREND];
         trend(t, direction[i]);
@@ -49,7 +52,31 @@ relume_status neighbours_create(struct neighbours *out, const vec3 *direction, i
 void neighbours_destroy(struct neighbours *set)
 {
     mem_free(set->inverse);
+    mem_free(set->kernel);
     *set = (struct neighbours){0};
+}
+
+void neighbours_all_weights(const struct neighbours *set, vec3 d, double *weight)
+{
+    const int n = set->n, m = n + TREND;
+    double side[TREND];
+    trend(side, d);
+    for (int k = 0; k < n; k++)
+        set->kernel[k] = kernel(d, set->direction[k]);
+    for (int r = 0; r < n; r++) {
+        const double *row = set->inverse + (size_t)r * (size_t)m;
+        double sum = 0.0;
+        for (int k = 0; k < n; k++)
+            sum += row[k] * set->kernel[k];
+        for (int k = 0; k < TREND; k++)
+            sum += row[n + k] * side[k];
+        weight[r] = sum;
+    }
+}
+
+const double *neighbours_row(const struct neighbours *set, int i)
+{
+    return set->inverse + (size_t)i * (size_t)(set->n + TREND);
 }
 
 // Dubrule's formula serves the photograph's own light; any other light needs the inverse
@@ -57,18 +84,21 @@ void neighbours_destroy(struct neighbours *set)
 double neighbours_weights(const struct neighbours *set, int left_out, vec3 d, double *weight)
 {
     const int n = set->n, m = n + TREND, i = left_out;
-    const double *q = set->inverse + (size_t)i * (size_t)m;
+    const double *q = neighbours_row(set, i);
+    double *const near = set->kernel;
     double side[TREND], along = 0.0, variance = 0.0, trend_part[TREND];
     trend(side, d);
     for (int k = 0; k < n; k++)
-        along += k == i ? 0.0 : q[k] * kernel(d, set->direction[k]);
+        near[k] = k == i ? 0.0 : kernel(d, set->direction[k]);
+    for (int k = 0; k < n; k++)
+        along += q[k] * near[k];
     for (int k = 0; k < TREND; k++)
         along += q[n + k] * side[k];
     for (int r = 0; r < m; r++) {
         const double *row = set->inverse + (size_t)r * (size_t)m;
         double sum = -q[r] / q[i] * along;
         for (int k = 0; k < n && r != i; k++)
-            sum += k == i ? 0.0 : row[k] * kernel(d, set->direction[k]);
+            sum += row[k] * near[k];
         for (int k = 0; k < TREND && r != i; k++)
             sum += row[n + k] * side[k];
         if (r < n)
@@ -77,7 +107,7 @@ double neighbours_weights(const struct neighbours *set, int left_out, vec3 d, do
             trend_part[r - n] = sum;
     }
     for (int k = 0; k < n; k++)
-        variance -= k == i ? 0.0 : weight[k] * kernel(d, set->direction[k]);
+        variance -= weight[k] * near[k];
     for (int k = 0; k < TREND; k++)
         variance -= trend_part[k] * side[k];
     return sqrt(fmax(variance, NUGGET));

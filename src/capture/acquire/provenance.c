@@ -137,10 +137,10 @@ char *acquire_provenance(const struct acquisition *s)
     return jtake(&w, NULL);
 }
 
-// Warns where photograph `i` is an earlier one under another name.
+// Warns where photograph `i` is an earlier one under another name. Renderings may be equal.
 static relume_status name_twin(struct acquisition *s, int i)
 {
-    for (int k = 0; k < i; k++)
+    for (int k = 0; k < i && !s->shot[i].notes.floats; k++)
         if (!strcmp(s->shot[k].sha256, s->shot[i].sha256))
             return acquire_warn(s,
                                 "%s and %s are the same photograph, byte for byte; one of the "

@@ -111,7 +111,7 @@ static struct distance find_spread(const struct ball_rays *rays, int photographs
             const double w = isinf(d.variance) ? 0.0 : 1.0 / (d.variance + mean.variance + 1e-12);
             weight += w;
             sum += w * d.log;
-            excess += w * (pow(d.log - mean.log, 2.0) - d.variance);
+            excess += w > 0.0 ? w * (pow(d.log - mean.log, 2.0) - d.variance) : 0.0;
         }
         if (!(weight > 0.0))
             return (struct distance){0.0, INFINITY};

@@ -60,7 +60,6 @@ struct capture_files {
     struct changed_picture *changed;  // [lights], or NULL; belongs to the capture, unless it fails
     struct relume_image mask;         // empty: none; likewise
     int width, height;
-    bool floats;       // one of them holds floating-point numbers
     const char *path;  // begins sentences
 };
 relume_status capture_of_files(relume_capture **out, const struct capture_files *files,

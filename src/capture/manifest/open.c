@@ -270,7 +270,7 @@ relume_status capture_of_files(relume_capture **out, const struct capture_files 
     c->pictured = c->draft.m.lights;
     c->width = files->width;
     c->height = files->height;
-    c->floats = files->floats;
+    c->floats = true;  // as the folder's images are
     c->rounded = true;
     c->stated = p->transfer;
     c->transfer = c->draft.m.transfer;

@@ -58,11 +58,25 @@ static pid_t start_ffmpeg(const struct reading *r, const char *filter, const cha
     char from[PATH + 8];
     int ends[2] = {-1, -1};
     snprintf(from, sizeof from, "file:%.4000s", r->path);
-    const char *const raw[] = {
-        "ffmpeg",    "-nostdin", "-v",   "error", "-protocol_whitelist",
-        "file,pipe", "-i",       from,   "-an",   "-vsync",
-        "0",         "-vf",      filter, "-f",    output ? "rawvideo" : "image2",
-        to,          NULL};
+    const char *const raw[] = {"ffmpeg",
+                               "-nostdin",
+                               "-v",
+                               "error",
+                               "-protocol_whitelist",
+                               "file,pipe",
+                               "-format_whitelist",
+                               "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi",
+                               "-i",
+                               from,
+                               "-an",
+                               "-vsync",
+                               "0",
+                               "-vf",
+                               filter,
+                               "-f",
+                               output ? "rawvideo" : "image2",
+                               to,
+                               NULL};
     if (output && pipe2(ends, O_CLOEXEC))
         return -1;
     const pid_t child = fork();
@@ -300,9 +314,9 @@ relume_status film_frames_open(struct film_frames *out, const char *path, int mo
     relume_status status = relume_making_open(&out->folder, NULL, RELUME_MADE_FOLDER, false, log);
     if (!status)
         status = read_all(&r);
-    if (!status)
+    if (!status && r.frames)
         status = leave_out(&r);
-    if (!status)
+    if (!status && r.frames)
         count = choose(chosen, most, &r);
     if (!status && count < 3)
         status = say(log, RELUME_EUNFIT,

@@ -198,7 +198,7 @@ relume_status relume_pack_shadow(struct relume_image *out, relume_pack *pack, in
     return status;
 }
 
-// What the mask leaves out shows no highlight.
+// Takes highlights away where the mask leaves pixels out.
 static relume_status mask_gloss(struct relume_image *gloss, relume_pack *pack, int view)
 {
     struct relume_image mask;

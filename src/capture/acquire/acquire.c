@@ -347,7 +347,8 @@ static relume_status name_outliers(struct acquisition *s)
 relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
-    if (!s->dir && s->judged && s->witnessed)  // what the surface could say has been said
+    const bool has_nothing_to_say = s->coplanar || (s->judged && s->witnessed);
+    if (!s->dir && has_nothing_to_say)
         return RELUME_OK;
     relume_status status =
         !acquire_keeps_surface(s) && s->width > s->shot[0].small.width

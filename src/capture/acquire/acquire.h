@@ -96,6 +96,7 @@ struct acquisition {
     int summed;
     bool still;      // reflections that never move are left out of the balls
     bool judged;     // photographs were compared with those under similar lights
+    bool coplanar;   // the lights, nearly: no surface follows from them
     bool turned;     // the lights of the list were turned by `orientation`
     bool witnessed;  // a ball in the photographs agrees with the list of lights
     struct alike alike[ALIKE_KINDS];

@@ -217,7 +217,7 @@ static relume_status check_coverage(struct acquisition *s)
     out->wanted_count = n;
     for (int i = 0; i < n && i < SAID; i++)
         at += put_place(places + at, sizeof places - at, i ? "; " : "", out->wanted[i]);
-    if (!n || !s->dir)  // who encodes photographs cannot add lamps
+    if (!n)
         return RELUME_OK;
     return acquire_warn(s, "uneven light: the widest gap is %.0f degrees; add lamps: %s%s",
                         out->gap_deg, places, n > SAID ? "; and more, see report.html" : "");
@@ -235,8 +235,11 @@ relume_status acquire_check_lights(struct acquisition *s)
     }
     if (!lsq_eigenvalues(m, 3, values))
         return RELUME_ENOMEM;
+    s->coplanar = values[0] < FLAT;
+    if (!s->dir)  // who encodes photographs cannot add lamps, and wants no normals
+        return RELUME_OK;
     relume_status status = RELUME_OK;
-    if (values[0] < FLAT)
+    if (s->coplanar)
         status = acquire_warn(s,
                               "the light directions lie nearly in one plane (%.1f degrees off it): "
                               "normals cannot be computed",

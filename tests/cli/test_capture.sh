@@ -64,7 +64,7 @@ rm photos/all.lp
 expect_fail 'no grey region' 2 'four numbers x,y,w,h' out "$RELUME" capture photos --lights lights.txt --white 9,9 -o out
 expect_fail 'an integrable surface of given lights' 2 'needs --refine-lights' out "$RELUME" capture photos \
     --lights lights.txt --integrable -o out
-expect_fail 'a width of nothing' 2 'needs --height FILE.exr' out "$RELUME" capture photos --lights lights.txt --width 50 -o out
+expect_fail 'a width of nothing' 2 'needs --height FILE' out "$RELUME" capture photos --lights lights.txt --width 50 -o out
 expect_ok 'refined, integrable' 'curl is' "$RELUME" capture photos --lights lights.txt --refine-lights --integrable -o curl
 below 'lights that were right stay so' "$(angles curl)" 2
 expect_ok 'brightness alone' 'lamps of equal brightness' "$RELUME" capture photos --lights lights.txt --refine-brightness -o bright
@@ -113,7 +113,7 @@ rm raw/*0004.png && head -c 4000 /dev/zero >raw/"$(basename photos/*0004.png .pn
 bad 'a RAW that cannot be read' 'raw/.*0004.nef: a RAW photograph' raw --lights lights.txt
 awk 'NR == 4 { kept = $0; next } { print } NR == 5 { print kept }' lights.txt >exchanged.txt
 expect_ok 'two lights exchanged are named' '0003.png does not fit its light' "$RELUME" capture photos --lights exchanged.txt -o out
-check 'both of them' grep -q '0004.png does not fit its light' err.txt
+check 'both of them, by the ball' grep -q '0004.png: the ball shows its light' err.txt
 rm -rf out
 fresh photos sizes
 "$sphere" small --size 32 --lights 3 --hemisphere --format png

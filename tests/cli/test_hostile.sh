@@ -83,7 +83,7 @@ lp() { # a capture of the file, six times
 }
 n=0
 lp >tiles.lp
-expect_ok "tiles are read by rows" - env KB=1200000 ./bounded "$RELUME" encode tiles.lp -o tiles.exr --basis ptm -q --threads 2
+expect_ok "tiles are read by rows" 'are the same photograph' env KB=1200000 ./bounded "$RELUME" encode tiles.lp -o tiles.exr --basis ptm -q --threads 2
 
 # ---------------------------------------------------------------- channels that are no colour
 for case in 'exr-z:Z' 'exr-rg:R, G' 'exr-xyz:X, Y, Z' 'exr-100:c00, .*100 channels.'; do

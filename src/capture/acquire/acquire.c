@@ -32,6 +32,7 @@ relume_status acquire_drop(struct acquisition *s, int i, bool allowed, const cha
     va_end(list);
     if (!allowed)
         return log_fail(s->p.log, RELUME_EUNFIT, "%s", text);
+    const char *path = s->shot[i].path;
     char *image = s->dir ? mem_format("%s/%s", outdir_path(s->dir), s->shot[i].name) : NULL;
     if (s->dir && !image)
         return RELUME_ENOMEM;
@@ -39,14 +40,15 @@ relume_status acquire_drop(struct acquisition *s, int i, bool allowed, const cha
         unlink(image);
     mem_free(image);
     changed_picture_free(&s->shot[i].changed);
-    const relume_status status = acquire_warn(s, "%s: left out: %s", s->shot[i].path, text);
+    const relume_status status = acquire_warn(s, "%s: left out: %s", path, text);
     relume_image_destroy(&s->shot[i].small);
     relume_image_destroy(&s->shot[i].luma);
     memmove(&s->shot[i], &s->shot[i + 1], (size_t)(s->shots - i - 1) * sizeof *s->shot);
     s->shots--;
     s->out->left_out++;
     if (!status && s->shots < 3)
-        return log_fail(s->p.log, RELUME_EUNFIT, "fewer than 3 photographs are left");
+        return log_fail(s->p.log, RELUME_EUNFIT,
+                        "%s: left out: %s; fewer than 3 photographs are left", path, text);
     return status;
 }
 

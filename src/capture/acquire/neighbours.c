@@ -86,7 +86,7 @@ double neighbours_weights(const struct neighbours *set, int left_out, vec3 d, do
     const int n = set->n, m = n + TREND, i = left_out;
     const double *q = neighbours_row(set, i);
     double *const near = set->kernel;
-    double side[TREND], along = 0.0, variance = 0.0, trend_part[TREND];
+    double side[TREND], along = 0.0, variance = 0.0, trend_part[TREND] = {0.0};
     trend(side, d);
     for (int k = 0; k < n; k++)
         near[k] = k == i ? 0.0 : kernel(d, set->direction[k]);

@@ -371,6 +371,8 @@ relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
             "of unequal brightness (--refine-brightness), or linear photographs (--transfer "
             "linear)?",
             100.0 * mean_miss(&out->photometric));
+    if (!s->dir && s->judged)  // it may be that of some photographs
+        relume_photometric_destroy(&out->photometric);
     return status;
 }
 

@@ -51,7 +51,7 @@ sed 's/\.jpg/.png/' plain/lights.lp >bumped/lights.lp
 for i in 08 09 10 11; do "$mkimage" shift bumped/light00$i.png moved.png 3 && mv moved.png bumped/light00$i.png; done
 equals 'a camera that was bumped' bumped 'from bumped/light0008.png on the scene lies 3.0 pixels to the right' $ptm
 
-cp -r plain failed && "$mkimage" gain failed/light0005.jpg black.exr 0 && cp black.exr failed/light0005.jpg
+cp -r plain failed && "$mkimage" gain failed/light0005.jpg black.exr 0 && "$mkimage" shift black.exr failed/light0005.jpg 0
 equals 'a lamp that failed' failed 'light0005.jpg: left out: black' $ptm
 mkdir masked && cp plain/* masked && "$mkimage" plane plain/light0000.jpg mask.exr 0.9 && mv mask.exr masked
 equals 'a mask' masked - $ptm

@@ -148,7 +148,7 @@ RELUME_RESULT relume_status relume_capture_photographs(const char *dir,
 // the same bytes. Turned and moved photographs, and those of another colour space, are kept in
 // memory up to params->keep_bytes, then in temporary files beside params->scratch. `acquire` may be
 // NULL; its log, limits, transfer and output are ignored. `report` may be NULL; it is empty for
-// other captures, and may lack `photometric`. An input status, those of relume_capture_photographs.
+// other captures, and may lack `photometric`. Fails as relume_capture_photographs does.
 RELUME_RESULT relume_status relume_capture_open_photographs(
     relume_capture **out, const char *path, const struct relume_capture_params *params,
     const struct relume_acquire_params *acquire, struct relume_acquisition *report);

@@ -371,7 +371,7 @@ relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
             "of unequal brightness (--refine-brightness), or linear photographs (--transfer "
             "linear)?",
             100.0 * mean_miss(&out->photometric));
-    if (!s->dir && s->judged)  // it may be that of some photographs
+    if (!s->dir && s->judged)  // it may know some photographs alone
         relume_photometric_destroy(&out->photometric);
     return status;
 }

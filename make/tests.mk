@@ -83,7 +83,7 @@ $(FAULTS): tests/tools/preload/faults.c | $(DEPS)
 # ---------------------------------------------------------------- testing
 
 # `make test` is everything; `make check` is the part that one config runs.
-test: all
+test:
 	@tests/run.sh $(MAKE)
 # Sanitizers run few scripts (tests/check.sh), none of which needs these.
 check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS) $B/tests/core.so $(if $(filter asan tsan,$(config)),,$(FUZZ) $(GROWN))

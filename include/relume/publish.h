@@ -52,6 +52,10 @@ struct relume_publish_params {
     bool allow_outside;  // as relume_open_params
     bool keep_going;     // likewise
     int threads;         // default: all cores
+    // Planar files and slabs: the part that the site shows, x, y, width, height in pixels; width 0:
+    // all. Notes move with it; those beside it stay in the file's own list alone.
+    int crop[4];
+    bool crop_auto;  // the object, by its relief; all where it fills the picture
 };
 #define relume_publish_params(...)                                                                 \
     (&(const struct relume_publish_params){RELUME_SIZED(relume_publish_params), __VA_ARGS__})
@@ -75,6 +79,7 @@ struct relume_publish_report {
                      // the file's own pictures
     bool linear;     // its planes hold linear light
     enum relume_publish_advice advice;
+    int crop[4];  // x, y, width, height of the part that is shown; width 0: all
 };
 
 // Publishes `count` files, whatever relume_open or relume_baked_open opens, as the folder `site`:

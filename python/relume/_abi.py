@@ -57,6 +57,14 @@ struct relume_pictures { int sample; int width, height; int channels; void *data
 struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;
     bool skip_missing; bool allow_outside; bool repair; double assume_depth; size_t keep_bytes;
     void *scratch; };
+struct relume_acquire_params { size_t struct_size; void *log; void *limits;
+    struct relume_transfer transfer; char *mask; bool skip_bad; bool force; int threads; char *lights;
+    bool near; void *ball; int balls; bool distant; bool matte; char *ball_mask;
+    void *ball_photographs; int ball_photograph_count; struct relume_transfer ball_transfer;
+    double ball_z; double fov_deg; double focal_mm; bool refine_lights; bool refine_brightness;
+    bool integrable; int white[4]; char *target; void *target_corner; char *target_values; void *flats;
+    int flat_count; bool radial; bool align; bool no_registration; int crop[4]; bool crop_auto;
+    char *normals; char *albedo; char *height; double width_mm; bool surface; };
 struct relume_directions_params { size_t struct_size; void *log; uint64_t seed; bool hemisphere; bool pole_y; };
 struct relume_coder_params { size_t struct_size; void *log; int coefficients; bool hemispherical; bool pole_y;
     double ridge; bool no_ridge; bool luminance; bool robust; bool force; void *interpolant;

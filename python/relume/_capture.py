@@ -153,16 +153,20 @@ class Capture(Handle):
 
     @classmethod
     def open(cls, path: str | os.PathLike, *, transfer: str | None = None,
-             skip_missing: bool = False, repair: bool = False,
+             skip_missing: bool = False, repair: bool = False, crop=None,
              progress: Progress | None = None) -> "Capture":
-        """A capture.json, a folder with one, or a .lp file."""
+        """A capture.json, a folder with one, or a .lp file. `crop`: the part x, y, width, height of
+        its pictures, or "auto": the object."""
         self, log = cls(), Log(progress)
         params = structs["relume_capture_params"](
             log=log.address, transfer=transfer_of(transfer), skip_missing=skip_missing,
             repair=repair)
         self._name = os.fsencode(path)
+        part = structs["relume_acquire_params"](crop_auto=crop == "auto")
+        if crop is not None and crop != "auto":
+            part.crop[:] = [int(number) for number in crop]
         log.check(lib.relume_capture_open_photographs(self.out, self._name, ctypes.byref(params),
-                                                      None, None))
+                                                      ctypes.byref(part), None))
         return self
 
     def _keep(self, array: np.ndarray) -> int:

@@ -333,6 +333,14 @@ class Tool(Fixture):
         self.assertAlmostEqual(found.ssim, said["ssim"], places=4)
         self.assertEqual(data, (self.path / "box.exr").read_bytes())
 
+    def test_a_part_of_a_capture(self):
+        with relume.Capture.open(self.path / "dome") as whole:
+            with relume.Capture.open(self.path / "dome", crop=(2, 1, 5, 4)) as part:
+                self.assertEqual((part.width, part.height), (5, 4))
+                np.testing.assert_array_equal(part.image(3), whole.image(3)[1:5, 2:7])
+        with self.assertRaises(relume.UsageError):
+            relume.Capture.open(self.path / "dome", crop=(2, 1, 500, 4))
+
     def test_the_same_decisions(self):
         """The command and the module call one function: equal options, equal bytes."""
         with relume.Capture.open(self.path / "dome") as capture:

@@ -1,18 +1,24 @@
-// kept_notes.h - notes inside a relume file that another one replaces
+// kept_notes.h - notes on a relume file that another one replaces
 #ifndef CLI_KEPT_NOTES_H
 #define CLI_KEPT_NOTES_H
 
 #include "cli.h"
 
-// What the file `path` holds now; nothing where there is no such file, or no notes in it.
+#include <relume/exchange/notes.h>
+
+// The file `path` as it is now, and the notes on it, beside or inside. All members are NULL without
+// notes.
 struct kept_notes {
-    char *text;
-    int width, height, views;
+    relume_pack *pack;
+    relume_notes *notes;
+    char *inside;  // the list that the file itself holds, or NULL; ...
+    bool hidden;   // ... `notes` hide it, being beside the file
 };
 void kept_notes_read(struct kept_notes *out, const char *path);
-// Where `status` is RELUME_OK they go into the new file of that name, or, where its pictures have
-// another size, beside it as PATH.notes-before.json with a warning. Frees them; returns `status`,
-// RELUME_EIO, RELUME_ENOMEM.
+// Keeps the notes with the new file of that name, if `status` is RELUME_OK. They move if it shows
+// another part of the same photographs. Notes beside that part go into PATH.notes-outside.json,
+// with a warning. Notes inside a file of another size go into PATH.notes-before.json. Frees the
+// notes; returns `status`, RELUME_EIO, RELUME_ENOMEM.
 relume_status kept_notes_write(struct kept_notes *kept, const char *path, relume_status status,
                                const struct args *args);
 

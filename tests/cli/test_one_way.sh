@@ -60,4 +60,3 @@ relume capture masked --lights masked/lights.lp --crop 20,30,64,40 -o part
 relume encode part -o folder.exr $ptm
 expect_ok 'encode: a part' 'cropped to 20,30,64,40 of 128 x 128' "$RELUME" encode masked/lights.lp --crop 20,30,64,40 -o list.exr $ptm
 same 'equals capture and encode: a part' folder.exr list.exr
-not_encoded 'a part of a folder' 'part: a capture already; expected a list of photographs for --crop' part --crop 1,1,8,8

@@ -142,13 +142,14 @@ RELUME_RESULT relume_status relume_capture_photographs(const char *dir,
                                                        const struct relume_acquire_params *params,
                                                        struct relume_acquisition *report);
 
-// Opens a capture as relume_capture_open does. The photographs of a list, a .lp file with three or
-// more or its folder, pass the steps above on the way, and stay in their files. The capture equals
-// the folder that relume_capture_photographs makes with the list as `lights`: encoded, they have
-// the same bytes. Turned and moved photographs, and those of another colour space, are kept in
-// memory up to params->keep_bytes, then in temporary files beside params->scratch. `acquire` may be
-// NULL; its log, limits, transfer and output are ignored. `report` may be NULL; it is empty for
-// other captures, and may lack `photometric`. Fails as relume_capture_photographs does.
+// Opens a capture as relume_capture_open does. acquire->crop keeps a part of planar captures and
+// slabs. The photographs of a list, a .lp file with three or more or its folder, pass the steps
+// above on the way, and stay in their files. The capture equals the folder that
+// relume_capture_photographs makes with the list as `lights`: encoded, they have the same bytes.
+// Turned and moved photographs, and those of another colour space, are kept in memory up to
+// params->keep_bytes, then in temporary files beside params->scratch. `acquire` may be NULL; its
+// log, limits, transfer and output are ignored. `report` may be NULL; for other captures it has
+// only `crop`, and it may lack `photometric`. Fails as relume_capture_photographs does.
 RELUME_RESULT relume_status relume_capture_open_photographs(
     relume_capture **out, const char *path, const struct relume_capture_params *params,
     const struct relume_acquire_params *acquire, struct relume_acquisition *report);

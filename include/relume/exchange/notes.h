@@ -108,6 +108,19 @@ RELUME_API int relume_notes_find(const relume_notes *notes, const char *id);
 RELUME_API double relume_notes_scale(const relume_notes *notes);
 RELUME_RESULT relume_status relume_notes_set_scale(relume_notes *notes, double mm_per_pixel);
 
+// Splits notes by a part of their picture, which may reach beyond it. `inside` has the notes that
+// meet the part, moved, and saved views, on a file of the part's size. `outside` has the others as
+// they were. Both lists have the scale. RELUME_EINVAL for notes on an object, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_notes_crop(relume_notes **inside, relume_notes **outside,
+                                              const relume_notes *notes,
+                                              const struct relume_rect *part);
+
+// Finds the part of the views of `from` that the views of `to` show. It may reach beyond. Returns
+// false unless the provenance of both names the same photographs.
+struct relume_pack_info;
+RELUME_API bool relume_notes_part(struct relume_rect *part, const struct relume_pack_info *from,
+                                  const struct relume_pack_info *to);
+
 // ---------------------------------------------------------------- measures
 
 // What can be measured in the picture's plane, in an object's units through space; NaN where the

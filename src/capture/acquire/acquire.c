@@ -10,6 +10,8 @@
 #include "core/base/params.h"
 #include "core/base/tree.h"
 #include "core/math/sort.h"
+#include "image/geometry/geometry.h"
+#include "image/image/image.h"
 
 #include <ctype.h>
 #include <stdarg.h>
@@ -127,14 +129,9 @@ static relume_status fill_result(struct acquisition *s)
 static struct relume_geometry geometry_of(const struct acquisition *s)
 {
     struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, s->whole[0], s->whole[1]);
-    const int *crop = s->out->crop;
-    const double pixel = (g.window_max[0] - g.window_min[0]) / s->whole[0];
-    if (crop[2]) {
-        g.window_min[0] += pixel * crop[0];
-        g.window_max[0] = g.window_min[0] + pixel * crop[2];
-        g.window_max[1] -= pixel * crop[1];
-        g.window_min[1] = g.window_max[1] - pixel * crop[3];
-    }
+    const struct relume_rect part = acquire_part(s);
+    if (part.width)
+        geometry_crop(&g, s->whole[0], s->whole[1], &part);
     g.perspective = s->p.fov_deg > 0.0;
     if (g.perspective)
         g.camera_z = 1.0 / tan(s->p.fov_deg * M_PI / 360.0);
@@ -221,8 +218,9 @@ relume_status acquire_load_mask(struct relume_image *out, const struct acquisiti
     if (!status && (out->width != s->whole[0] || out->height != s->whole[1]))
         status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
                           s->p.mask, out->width, out->height, s->whole[0], s->whole[1]);
-    if (!status && s->out->crop[2])
-        status = acquire_crop_image(out, s->out->crop);
+    const struct relume_rect part = acquire_part(s);
+    if (!status && part.width)
+        status = image_crop(out, &part);
     if (status)
         relume_image_destroy(out);
     return status;

@@ -94,11 +94,12 @@ struct acquisition {
     struct relume_image mean, peak;
     struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
-    bool still;      // reflections that never move are left out of the balls
-    bool judged;     // photographs were compared with those under similar lights
-    bool coplanar;   // the lights, nearly: no surface follows from them
-    bool turned;     // the lights of the list were turned by `orientation`
-    bool witnessed;  // a ball in the photographs agrees with the list of lights
+    bool still;                  // reflections that never move are left out of the balls
+    bool judged;                 // photographs were compared with those under similar lights
+    bool coplanar;               // the lights, nearly: no surface follows from them
+    bool turned;                 // the lights of the list were turned by `orientation`
+    bool witnessed;              // a ball in the photographs agrees with the list of lights, ...
+    struct relume_ball witness;  // ... this one
     struct alike alike[ALIKE_KINDS];
 };
 
@@ -187,8 +188,12 @@ relume_status acquire_shrink(struct relume_image *out, const struct relume_image
 // Crops the photographs in the folder, and the small ones, as params.crop says. RELUME_EINVAL,
 // RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status acquire_crop(struct acquisition *s);
-// Cuts a picture to x, y, width, height, which lie inside. RELUME_ENOMEM.
-relume_status acquire_crop_image(struct relume_image *image, const int crop[4]);
+// The part that was kept; width 0: all.
+struct relume_rect acquire_part(const struct acquisition *s);
+// Returns how many balls stand in the photographs themselves.
+int acquire_balls_inside(const struct relume_ball **ball, const struct acquisition *s);
+// Says why --crop auto crops nothing: there is no relief, or the object fills the photographs.
+void acquire_say_no_object(bool relief, const struct relume_log *log);
 // How sharp a photograph is by itself.
 void acquire_measure_detail(struct shot *shot, const struct relume_image *image);
 // Check sums of the photographs' files. An input status, RELUME_ENOMEM.

@@ -4,6 +4,8 @@
 // there; one that was turned, brought to other colours or moved back is kept beside.
 #include "capture/acquire/acquire.h"
 
+#include "capture/acquire/object.h"
+#include "capture/manifest/provenance.h"
 #include "core/base/half.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
@@ -235,6 +237,94 @@ static relume_status open_listed(relume_capture **out, const relume_capture *lis
     return status;
 }
 
+// ---------------------------------------------------------------- a part of another capture
+
+// Some of the pictures of a view, made small.
+static relume_status shrink_view(struct relume_image *small, const struct relume_image **at,
+                                 int count, const relume_capture *c, int view,
+                                 const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < count; i++) {
+        struct relume_image image;
+        const int light = (int)((long long)i * c->draft.m.lights / count);
+        status = relume_capture_image(&image, c, view, light, log);
+        relume_image_destroy(&small[i]);
+        if (!status)
+            status = acquire_shrink(&small[i], &image);
+        relume_image_destroy(&image);
+        at[i] = &small[i];
+    }
+    return status;
+}
+
+static struct relume_rect around(struct relume_rect a, struct relume_rect b)
+{
+    if (!a.width || !b.width)
+        return a.width ? a : b;
+    const int left = a.left < b.left ? a.left : b.left, top = a.top < b.top ? a.top : b.top;
+    const int right = a.left + a.width > b.left + b.width ? a.left + a.width : b.left + b.width;
+    const int bottom = a.top + a.height > b.top + b.height ? a.top + a.height : b.top + b.height;
+    return (struct relume_rect){left, top, right - left, bottom - top};
+}
+
+// Finds the object in some of the views; width 0: all, since it fills one or has no relief.
+static relume_status find_object(struct relume_rect *out, const relume_capture *c,
+                                 const struct relume_log *log)
+{
+    enum { LIGHTS = 24, VIEWS = 5 };
+    struct relume_image small[LIGHTS] = {{.data = NULL}};
+    const struct relume_image *at[LIGHTS];
+    const struct relume_manifest *m = &c->draft.m;
+    const int count = m->lights < LIGHTS ? m->lights : LIGHTS;
+    const int views = m->views < VIEWS ? m->views : VIEWS;
+    struct provenance from;
+    struct relume_rect object = {.width = 1};
+    bool relief = false;
+    relume_status status = RELUME_OK;
+    provenance_read(&from, m->provenance);
+    const struct object_search search = {.small = at,
+                                         .count = count,
+                                         .step = acquire_small_step(c->width, c->height),
+                                         .width = c->width,
+                                         .height = c->height,
+                                         .ball = from.ball,
+                                         .balls = from.balls};
+    *out = (struct relume_rect){.width = 0};
+    for (int v = 0; !status && object.width && v < views; v++) {
+        const int view = views > 1 ? (int)((long long)v * (m->views - 1) / (views - 1)) : 0;
+        status = shrink_view(small, at, count, c, view, log);
+        if (!status)
+            status = object_find(&object, &relief, &search);
+        *out = around(*out, object);
+    }
+    if (!object.width) {
+        *out = object;
+        acquire_say_no_object(relief, log);
+    }
+    for (int i = 0; i < count; i++)
+        relume_image_destroy(&small[i]);
+    return status;
+}
+
+static relume_status crop_capture(relume_capture *c, const struct relume_acquire_params *a,
+                                  struct relume_acquisition *report, const struct relume_log *log)
+{
+    const int whole[2] = {c->width, c->height};
+    struct relume_rect part = {a->crop[0], a->crop[1], a->crop[2], a->crop[3]};
+    relume_status status = a->crop_auto ? find_object(&part, c, log) : RELUME_OK;
+    if (status || (!part.width && !part.height))
+        return status;
+    status = capture_crop(c, &part, log);
+    if (status)
+        return status;
+    memcpy(report->crop, (const int[]){part.left, part.top, part.width, part.height},
+           sizeof report->crop);
+    log_line(log, RELUME_NOTE, "cropped to %d,%d,%d,%d of %d x %d pixels", part.left, part.top,
+             part.width, part.height, whole[0], whole[1]);
+    return RELUME_OK;
+}
+
 relume_status relume_capture_open_photographs(relume_capture **out, const char *path,
                                               const struct relume_capture_params *params,
                                               const struct relume_acquire_params *acquire,
@@ -248,13 +338,10 @@ relume_status relume_capture_open_photographs(relume_capture **out, const char *
     relume_status status = relume_capture_open(&list, path, params);
     *out = list;
     const bool photographs = !status && is_list(list) && !(p.repair && list->floats);
-    if (!status && !photographs && (a.crop_auto || a.crop[2])) {
-        status = log_fail(p.log, RELUME_EUNFIT,
-                          "%s: a capture already; expected a list of photographs for --crop, or "
-                          "relume capture --crop",
-                          path);
+    if (!status && !photographs)
+        status = crop_capture(list, &a, into, p.log);
+    if (status && !photographs)
         relume_capture_destroy(out);
-    }
     if (!photographs)
         return status;
     p.limits = limits_of(p.limits, p.log);

@@ -339,6 +339,8 @@ static relume_status judge(struct witness *w)
         return RELUME_OK;
     if (m->kind != LIGHT_MATCH_SAME)
         return refuse(w);
+    s->witness = (struct relume_ball){
+        .x = w->scale * w->ball.x, .y = w->scale * w->ball.y, .radius = w->scale * w->ball.radius};
     log_line(s->p.log, RELUME_NOTE, "%s: agrees with the ball at %.0f,%.0f to %.1f degrees",
              s->p.lights, w->scale * w->ball.x, w->scale * w->ball.y, m->left);
     return name_strays(w);

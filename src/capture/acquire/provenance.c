@@ -117,6 +117,20 @@ static void put_chart(struct jwriter *w, const struct acquisition *s)
     jclose_levels(w, 2);
 }
 
+// The balls in pixels of the photographs as they are upright, so that later crops leave them out.
+static void put_balls(struct jwriter *w, const struct acquisition *s)
+{
+    const struct relume_ball *ball;
+    const int balls = acquire_balls_inside(&ball, s);
+    if (!balls)
+        return;
+    jgap(w, "\n    ");
+    jopen_array(w, "balls");
+    for (int i = 0; i < balls; i++)
+        jput_numbers(w, NULL, (const double[]){ball[i].x, ball[i].y, ball[i].radius}, 3, 6);
+    jclose(w);
+}
+
 char *acquire_provenance(const struct acquisition *s)
 {
     struct jwriter w = {0};
@@ -126,14 +140,15 @@ char *acquire_provenance(const struct acquisition *s)
     for (int i = 0; i < s->shots; i++)
         put_photograph(&w, &s->shot[i]);
     jclose(&w);
-    if (s->out->crop[2]) {
-        jopen_array(&w, "crop");  // of the photographs as they are upright
+    put_balls(&w, s);
+    if (s->out->target)
+        put_chart(&w, s);
+    if (s->out->crop[2]) {  // the last member, as provenance_crop has it
+        jopen_array(&w, "crop");
         for (int i = 0; i < 4; i++)
             jput_integer(&w, NULL, s->out->crop[i]);
         jclose(&w);
     }
-    if (s->out->target)
-        put_chart(&w, s);
     return jtake(&w, NULL);
 }
 

@@ -98,8 +98,9 @@ static const struct changed_picture *changed_picture_of(const relume_capture *c,
     return c->changed && c->changed[at].halves ? &c->changed[at] : NULL;
 }
 
-relume_status capture_picture(picture_reader **out, const relume_capture *c, int view, int light,
-                              const struct relume_limits *limits, const struct relume_log *log)
+static relume_status whole_picture(picture_reader **out, const relume_capture *c, int view,
+                                   int light, const struct relume_limits *limits,
+                                   const struct relume_log *log)
 {
     const struct relume_log own = log_of(c, log);
     const struct changed_picture *changed = changed_picture_of(c, light);
@@ -110,6 +111,20 @@ relume_status capture_picture(picture_reader **out, const relume_capture *c, int
         return picture_open(out, c->draft.m.view[view].images[light], NULL, limits, &own);
     const struct picture_array array = capture_array(c, view, light);
     return array_picture_open(out, &array);
+}
+
+relume_status capture_picture(picture_reader **out, const relume_capture *c, int view, int light,
+                              const struct relume_limits *limits, const struct relume_log *log)
+{
+    relume_status status = whole_picture(out, c, view, light, limits, log);
+    if (status || !c->part.width)
+        return status;
+    const struct picture_info *info = picture_info_of(*out);
+    if (info->width == c->whole[0] && info->height == c->whole[1])
+        status = picture_crop(out, &c->part);
+    if (status)
+        picture_close(out);
+    return status;
 }
 
 relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
@@ -152,14 +167,36 @@ void relume_capture_white(const relume_capture *capture, int light, float rgb[3]
 }
 
 // A view's plane of an array of all of them.
-static relume_status copy_plane(struct relume_image *out, const relume_capture *c, int view,
+static relume_status copy_plane(struct relume_image *out, int width, int height, int view,
                                 const float *planes)
 {
-    const size_t size = (size_t)c->width * (size_t)c->height;
-    const relume_status status = relume_image_create(out, c->width, c->height, 1);
+    const size_t size = (size_t)width * (size_t)height;
+    const relume_status status = relume_image_create(out, width, height, 1);
     if (!status)
         memcpy(out->data, planes + (size_t)view * size, size * sizeof *planes);
     return status;
+}
+
+static relume_status load_whole_plane(struct relume_image *out, const relume_capture *capture,
+                                      int view, const char *path, const float *planes,
+                                      const struct relume_log *log)
+{
+    const bool cropped = capture->part.width > 0;
+    const int wanted[2] = {cropped ? capture->whole[0] : capture->width,
+                           cropped ? capture->whole[1] : capture->height};
+    if (planes)
+        return copy_plane(out, wanted[0], wanted[1], view, planes);
+    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
+    const struct relume_log own = log_of(capture, log);
+    const relume_status status = image_load_large(
+        out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored),
+        capture->scratch);
+    if (status || (out->width == wanted[0] && out->height == wanted[1]))
+        return status;
+    const int width = out->width, height = out->height;
+    relume_image_destroy(out);
+    return log_fail(log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as in the images",
+                    path, width, height, wanted[0], wanted[1]);
 }
 
 static relume_status load_plane(struct relume_image *out, const relume_capture *capture, int view,
@@ -168,19 +205,12 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
     *out = (struct relume_image){0};
     if (!path)
         return RELUME_OK;
-    if (planes)
-        return copy_plane(out, capture, view, planes);
-    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
-    const struct relume_log own = log_of(capture, log);
-    const relume_status status = image_load_large(
-        out, path, relume_image_params(.log = &own, .channels = 1, .transfer = as_stored),
-        capture->scratch);
-    if (status || (out->width == capture->width && out->height == capture->height))
-        return status;
-    const int width = out->width, height = out->height;
-    relume_image_destroy(out);
-    return log_fail(log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as in the images",
-                    path, width, height, capture->width, capture->height);
+    relume_status status = load_whole_plane(out, capture, view, path, planes, log);
+    if (!status && capture->part.width)
+        status = image_crop(out, &capture->part);
+    if (status)
+        relume_image_destroy(out);
+    return status;
 }
 
 relume_status relume_capture_depth(struct relume_image *out, const relume_capture *capture,

@@ -27,8 +27,10 @@ struct relume_capture {
     bool rounded;         // integers of files are rounded as in a capture's folder
     const int *light_of;  // [lights]: of those; NULL: the same
     int width, height;
-    int x, y;     // origin of the images' data windows
-    bool floats;  // an image holds floating-point numbers
+    struct relume_rect part;  // of the images, which are
+    int whole[2];             // ... so wide and high, that is the capture; width 0: all of them
+    int x, y;                 // origin of the images' data windows
+    bool floats;              // an image holds floating-point numbers
     bool repair;
     const char *scratch;  // beside which large depth and masks are kept, or NULL
     double assume_depth;  // of near lights' views without depth; 0: none
@@ -64,6 +66,12 @@ struct capture_files {
 };
 relume_status capture_of_files(relume_capture **out, const struct capture_files *files,
                                const struct relume_capture_params *params);
+
+// From now on the capture is that part of its images, depth and masks; its window and provenance
+// follow. Before anything is read of it. RELUME_EINVAL for a part that does not lie within them,
+// RELUME_EUNFIT for panoramas and slabs around an object, RELUME_ENOMEM.
+relume_status capture_crop(relume_capture *capture, const struct relume_rect *part,
+                           const struct relume_log *log);
 
 // One image of a capture of pictures in memory, which follow each other there.
 struct picture_array capture_array(const relume_capture *capture, int view, int light);

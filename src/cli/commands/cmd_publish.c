@@ -1,7 +1,8 @@
 // cmd_publish.c - relume publish: relightable files as a web site
-#include "cli/cli.h"
+#include "cli/commands/crop_option.h"
 
 #include <relume/publish.h>
+#include <string.h>
 
 struct publish_options {
     struct args args;
@@ -10,6 +11,7 @@ struct publish_options {
     enum relume_publish_layers layers;
     int coefficients, quality;
     double bytes_per_pixel, psnr, mm_per_pixel;
+    struct crop crop;
     bool force, allow_outside, keep_going;
 };
 #define OPTIONS struct publish_options
@@ -45,6 +47,7 @@ static const struct option options[] = {
     INT("--coefficients", coefficients, "K", "planes; default: up to 27, as many as are worth it",
         1, 90),
     GROUP("input"),
+    CROP_OPTION,
     ALLOW_OUTSIDE_OPTION,
     KEEP_GOING_OPTION,
     {0},
@@ -92,7 +95,7 @@ static void print_report(const struct publish_options *o, const struct relume_pu
 
 static struct relume_publish_params read_options(const struct publish_options *o)
 {
-    return (struct relume_publish_params){
+    struct relume_publish_params p = {
         .struct_size = sizeof(struct relume_publish_params),
         .log = o->args.log,
         .title = o->title,
@@ -112,8 +115,11 @@ static struct relume_publish_params read_options(const struct publish_options *o
         .force = o->force,
         .allow_outside = o->allow_outside,
         .keep_going = o->keep_going,
+        .crop_auto = o->crop.automatic,
         .threads = o->args.threads,
     };
+    memcpy(p.crop, o->crop.part, sizeof p.crop);
+    return p;
 }
 
 static relume_status run_publish(const struct args *args)

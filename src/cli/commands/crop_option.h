@@ -1,4 +1,4 @@
-// crop_option.h - which part of the photographs a capture holds
+// crop_option.h - which part of the pictures is kept
 #ifndef CLI_CROP_OPTION_H
 #define CLI_CROP_OPTION_H
 
@@ -10,8 +10,7 @@ struct crop {
 };
 #define CROP_OPTION                                                                                \
     OWN("--crop", crop, "x,y,w,h",                                                                 \
-        "keep this part of the photographs, or auto: the object without ball and table",           \
-        take_crop)
+        "keep this part of the pictures, or auto: the object without ball and table", take_crop)
 relume_status take_crop(void *crop, const struct option *option, const char *text,
                         const struct relume_log *log);
 

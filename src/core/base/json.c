@@ -172,6 +172,17 @@ bool jvalue_may_hold(const char *text)
     return n == 0;
 }
 
+bool jvalue_set_integers(jvalue *object, const char *key, const int *value, size_t count)
+{
+    json_t *array = json_array();
+    bool good = array != NULL;
+    for (size_t i = 0; good && i < count; i++)
+        good = !json_array_append_new(array, json_integer(value[i]));
+    if (!good)
+        json_decref(array);
+    return good && !json_object_set_new(object, key, array);
+}
+
 char *jvalue_print(const jvalue *value)
 {
     char *made = json_dumps(value, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_ENCODE_ANY);

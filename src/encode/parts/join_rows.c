@@ -253,7 +253,7 @@ static relume_status read_plane(struct relume_image *out, const struct rows_join
         !info.uniform || info.sample != sample)
         return damaged(j, part);
     exr_file *own = h->file;
-    const struct relume_rect all = reader_whole(h);
+    const struct relume_rect all = {0, 0, h->info.width, h->info.height};
     h->file = part->file;
     h->log = NULL;
     const relume_status status = reader_load_plane(out, h, k, &all);

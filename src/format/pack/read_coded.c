@@ -229,7 +229,7 @@ relume_status reader_load_coded(relume_pack *p, int view, int level, const struc
     int *order = lossy_order(p->coder);
     struct lossy_shape shape = {
         .planes = p->info.planes, .colour = lossy_in_colour(p->coder), .order = order};
-    relume_pack_level_size(&shape.width, &shape.height, p, level);
+    reader_level_size(&shape.width, &shape.height, p, level);
     struct losing losing = {.pack = p, .rect = rect, .codes = codes, .data = data, .words = &words};
     const struct lossy_lost lost = {lose_tile, &losing};
     snprintf(losing.view, sizeof losing.view, level ? "view%04d.level%d" : "view%04d", view, level);
@@ -257,13 +257,15 @@ relume_status reader_load_coded_depth(struct relume_image *out, relume_pack *p, 
     struct lossy_words words = {0};
     char name[32];
     snprintf(name, sizeof name, "view%04d.depth", view);
-    relume_status status = relume_image_create(out, p->info.width, p->info.height, 1);
+    relume_status status = relume_image_create(out, p->width, p->height, 1);
     if (!status)
         status = read_words(&words, p, v->depth, v->depth_words);
     if (!status)
         status = disparity_decode(out, &words, v->depth_step);
     if (status == RELUME_EDAMAGED)
         status = reader_bad(p, name, "a sound depth map");
+    if (!status)
+        status = reader_crop(out, p);
     if (!status)
         format_turn_depth(out, relume_pack_geometry(p, view), p->info.uv[view], false);
     mem_free(words.word);
@@ -283,7 +285,7 @@ relume_status reader_load_learnt(struct relume_image *out, relume_pack *p, int p
     struct learnt_steps steps;
     memcpy(steps.scale, reader_floats(p, part, ATTR_SCALE, LEARNT), sizeof steps.scale);
     memcpy(steps.offset, reader_floats(p, part, ATTR_OFFSET, LEARNT), sizeof steps.offset);
-    relume_status status = relume_image_create(out, p->info.width, p->info.height, LEARNT);
+    relume_status status = relume_image_create(out, p->width, p->height, LEARNT);
     if (!status)
         status = read_words(&words, p, part, all);
     if (!status)
@@ -292,6 +294,8 @@ relume_status reader_load_learnt(struct relume_image *out, relume_pack *p, int p
         status = reader_bad(p, info.name,
                             p->keep_going ? "tiles of sound AV1 data"
                                           : "tiles of sound AV1 data; --keep-going shows the rest");
+    if (!status)
+        status = reader_crop(out, p);
     mem_free(words.word);
     return status;
 }

@@ -61,10 +61,10 @@ relume_status reader_load_halved(relume_pack *p, int view, const struct relume_r
                                  const struct relume_codes *like, uint16_t *data)
 {
     struct relume_rect twice = {2 * rect->left, 2 * rect->top, 2 * rect->width, 2 * rect->height};
-    if (twice.width > p->info.width - twice.left)
-        twice.width = p->info.width - twice.left;
-    if (twice.height > p->info.height - twice.top)
-        twice.height = p->info.height - twice.top;
+    if (twice.width > p->width - twice.left)
+        twice.width = p->width - twice.left;
+    if (twice.height > p->height - twice.top)
+        twice.height = p->height - twice.top;
     struct relume_codes_part from = {.memory = NULL};
     const relume_status status = reader_load_planes(&from, p, view, 0, &twice, like);
     if (!status)

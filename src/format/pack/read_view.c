@@ -148,10 +148,9 @@ relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int
     *out = (struct relume_image){0};
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
-    const struct relume_rect all = reader_whole(pack);
     if (pack->parts[view].depth_words.count)
         return reader_load_coded_depth(out, pack, view);
-    return reader_load_plane(out, pack, pack->parts[view].depth, &all);
+    return reader_load_plane(out, pack, pack->parts[view].depth, &pack->shown);
 }
 
 // Colours and thicknesses of 0 or more, the rest finite.
@@ -278,7 +277,7 @@ static relume_status pick_coded(struct picking *p, relume_pack *pack, int view)
 relume_status relume_pack_depth_level(struct relume_image *out, relume_pack *pack, int view,
                                       int level)
 {
-    struct picking picking = {out, reader_whole(pack), level};
+    struct picking picking = {out, pack->shown, level};
     int width, height;
     *out = (struct relume_image){0};
     if (!level)
@@ -303,6 +302,5 @@ relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int 
     *out = (struct relume_image){0};
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
-    const struct relume_rect all = reader_whole(pack);
-    return reader_load_plane(out, pack, pack->parts[view].mask, &all);
+    return reader_load_plane(out, pack, pack->parts[view].mask, &pack->shown);
 }

@@ -8,6 +8,8 @@
 #include "format/coder/coding.h"
 #include "format/pack/views.h"
 #include "format/pack/reader.h"
+#include "image/geometry/geometry.h"
+#include "image/image/image.h"
 
 #include <math.h>
 
@@ -61,6 +63,9 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
         p->info.has_sums = exr_has_sums(p->file);
         status = reader_read_header(p);
     }
+    p->width = p->info.width;
+    p->height = p->info.height;
+    p->shown = (struct relume_rect){0, 0, p->width, p->height};
     if (!status)
         status = reader_find_parts(p);
     if (!status && p->info.has_mask)
@@ -99,15 +104,61 @@ const struct relume_geometry *relume_pack_geometry(const relume_pack *pack, int 
     return info->slabs ? &info->slab[info->slab_of[view]] : &info->geometry;
 }
 
-void relume_pack_level_size(int *width, int *height, const relume_pack *pack, int level)
+// ---------------------------------------------------------------- parts of views
+
+static void halve(int *width, int *height, int times)
 {
-    *width = pack->info.width;
-    *height = pack->info.height;
-    for (int i = 0; i < level; i++) {
+    for (int i = 0; i < times; i++) {
         *width = (*width + 1) / 2;
         *height = (*height + 1) / 2;
     }
 }
+
+void reader_level_size(int *width, int *height, const relume_pack *p, int level)
+{
+    *width = p->width;
+    *height = p->height;
+    halve(width, height, level);
+}
+
+void relume_pack_level_size(int *width, int *height, const relume_pack *pack, int level)
+{
+    *width = pack->info.width;
+    *height = pack->info.height;
+    halve(width, height, level);
+}
+
+relume_status reader_crop(struct relume_image *image, const relume_pack *p)
+{
+    const bool all = p->shown.width == p->width && p->shown.height == p->height;
+    return all ? RELUME_OK : image_crop(image, &p->shown);
+}
+
+relume_status relume_pack_crop(relume_pack *pack, const struct relume_rect *part)
+{
+    struct relume_pack_info *info = &pack->info;
+    if (info->slabs || info->geometry.projection > RELUME_SLAB)
+        return log_fail(pack->log, RELUME_EUNFIT,
+                        "%s: has no parts by themselves; --crop expects a planar file or one slab",
+                        pack->path);
+    if (part->left < 0 || part->top < 0 || part->width < 1 || part->height < 1 ||
+        part->width > info->width - part->left || part->height > info->height - part->top)
+        return log_fail(pack->log, RELUME_EINVAL,
+                        "%s: --crop %d,%d,%d,%d: expected a part of its %d x %d pixels", pack->path,
+                        part->left, part->top, part->width, part->height, info->width,
+                        info->height);
+    geometry_crop(&info->geometry, info->width, info->height, part);
+    for (int v = 0; v < info->views; v++)
+        relume_pack_drop(pack, v);
+    pack->shown = (struct relume_rect){pack->shown.left + part->left, pack->shown.top + part->top,
+                                       part->width, part->height};
+    info->width = part->width;
+    info->height = part->height;
+    info->levels = 0;
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- codes
 
 static relume_status check_bytes(const relume_pack *p, const struct relume_rect *rect,
                                  const struct relume_codes *like)
@@ -153,8 +204,7 @@ relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pa
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
     struct relume_codes_part *to = &pack->loaded[view];
-    const struct relume_rect all = reader_whole(pack);
-    const relume_status status = to->memory ? RELUME_OK : load(to, pack, view, 0, &all);
+    const relume_status status = to->memory ? RELUME_OK : load(to, pack, view, 0, &pack->shown);
     if (status) {
         relume_pack_drop(pack, view);
         return status;
@@ -175,8 +225,10 @@ relume_status relume_pack_codes_level(struct relume_codes_part *out, relume_pack
         rect->width > width - rect->left || rect->height > height - rect->top)
         return RELUME_EINVAL;
     const struct relume_codes_part *whole = &pack->loaded[view];
+    const struct relume_rect at = {pack->shown.left + rect->left, pack->shown.top + rect->top,
+                                   rect->width, rect->height};
     return whole->memory && !level ? relume_codes_crop(out, &whole->codes, rect)
-                                   : load(out, pack, view, level, rect);
+                                   : load(out, pack, view, level, &at);
 }
 
 relume_status relume_pack_codes_part(struct relume_codes_part *out, relume_pack *pack, int view,

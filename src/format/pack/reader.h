@@ -38,6 +38,8 @@ struct relume_pack {
     struct arena arena;
     exr_file *file;
     char *path;
+    int width, height;         // of each view in the file
+    struct relume_rect shown;  // the part of them that `info` describes
     relume_coder *coder;
     struct view_parts *parts;                      // [views]
     struct relume_codes_part *loaded;              // [views]
@@ -58,16 +60,14 @@ relume_status reader_bad(const relume_pack *p, const char *what, const char *exp
 const float *reader_any_floats(const relume_pack *p, int part, const char *name, int *count);
 const float *reader_floats(const relume_pack *p, int part, const char *name, int count);
 
-// All of a view.
-static inline struct relume_rect reader_whole(const relume_pack *p)
-{
-    return (struct relume_rect){0, 0, p->info.width, p->info.height};
-}
-
 // Everything of the first part, into the info and the coder (read_header.c); then which part is
 // which (read_parts.c).
 relume_status reader_read_header(relume_pack *p);
 relume_status reader_find_parts(relume_pack *p);
+
+// The size of the file's views at a level. An image of such a view becomes that of the part.
+void reader_level_size(int *width, int *height, const relume_pack *p, int level);
+relume_status reader_crop(struct relume_image *image, const relume_pack *p);
 
 // Numbers of the file's storage: data[planes][rows][columns] of a rectangle of the part, checked.
 // They are the planes from `first` on, in the order in which the file sorts them, or in that of

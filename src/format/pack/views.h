@@ -13,6 +13,11 @@ enum { RELUME_MOST_LEVELS = 16 };
 // Most bytes of notes that a file holds itself.
 enum { RELUME_PACK_MOST_NOTES = 1 << 26 };
 
+// From now on the views of an open file are that part of them: info, geometry, codes, depth, masks
+// and models. Reduced levels are given up. Notes stay those on the whole. RELUME_EINVAL for a part
+// that does not lie within the views, RELUME_EUNFIT for panoramas and slabs around an object.
+relume_status relume_pack_crop(relume_pack *pack, const struct relume_rect *part);
+
 // Those of a rectangle of it alone, of which no more is read than the rows of the file that hold
 // it, or tiles. They belong to the caller, but for codebooks, which stay until the pack's are
 // dropped. RELUME_EINVAL where the rectangle does not lie within the view.

@@ -69,6 +69,19 @@ bool relume_geometry_shows(const struct relume_geometry *g, int width, int heigh
     return column < 2 * g->disc && a * a + b * b <= 0.25;
 }
 
+// ---------------------------------------------------------------- parts
+
+void geometry_crop(struct relume_geometry *g, int width, int height, const struct relume_rect *part)
+{
+    const bool slab = g->projection == RELUME_SLAB;
+    double *low = slab ? g->st_min : g->window_min, *high = slab ? g->st_max : g->window_max;
+    const double pixel[2] = {(high[0] - low[0]) / width, (high[1] - low[1]) / height};
+    low[0] += pixel[0] * part->left;
+    high[0] = low[0] + pixel[0] * part->width;
+    high[1] -= pixel[1] * part->top;
+    low[1] = high[1] - pixel[1] * part->height;
+}
+
 // ---------------------------------------------------------------- pose
 
 static bool near_to(double found, double wanted)

@@ -64,6 +64,31 @@ void relume_image_destroy(struct relume_image *image)
     *image = (struct relume_image){0};
 }
 
+relume_status image_part(struct relume_image *out, const struct relume_image *image,
+                         const struct relume_rect *part)
+{
+    const size_t channels = (size_t)image->channels, row = channels * (size_t)part->width;
+    const relume_status status =
+        relume_image_create(out, part->width, part->height, image->channels);
+    for (size_t y = 0; !status && y < (size_t)part->height; y++)
+        memcpy(out->data + y * row,
+               image->data +
+                   channels * (((size_t)part->top + y) * (size_t)image->width + (size_t)part->left),
+               row * sizeof *out->data);
+    return status;
+}
+
+relume_status image_crop(struct relume_image *image, const struct relume_rect *part)
+{
+    struct relume_image cropped;
+    const relume_status status = image_part(&cropped, image, part);
+    if (!status) {
+        relume_image_destroy(image);
+        *image = cropped;
+    }
+    return status;
+}
+
 // ---------------------------------------------------------------- streams
 
 struct relume_transfer image_transfer(struct relume_transfer transfer,

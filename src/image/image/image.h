@@ -29,6 +29,12 @@ relume_status image_load_large(struct relume_image *out, const char *path,
 // Rows of such an image are not looked at for now. Of others nothing happens.
 void image_forget(const struct relume_image *image, int row, int rows);
 
+// A part of an image, which lies within it, as a new one. RELUME_ENOMEM.
+relume_status image_part(struct relume_image *out, const struct relume_image *image,
+                         const struct relume_rect *part);
+// The image becomes that part of it.
+relume_status image_crop(struct relume_image *image, const struct relume_rect *part);
+
 enum { IMAGE_STREAM_ROWS = 16 };
 
 // Reads rows of one file as 1 or 3 channels after a per-value function: decode by `from`, divide

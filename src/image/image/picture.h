@@ -32,6 +32,9 @@ struct picture_array {
 };
 // The same for those. RELUME_ENOMEM.
 relume_status array_picture_open(picture_reader **out, const struct picture_array *array);
+// The reader becomes one of a part of its picture, whose notes and profile are left out.
+// RELUME_EINVAL for a part that does not lie within it, RELUME_ENOMEM: the reader stays as it is.
+relume_status picture_crop(picture_reader **reader, const struct relume_rect *part);
 const struct picture_info *picture_info_of(const picture_reader *reader);
 // Code values of `rows` rows from `row` on, out[row][x][channel]: as they are from files of bytes;
 // as floats from all others, integers map to [0, 1]. With `info.jumps` rows come in any order and

@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "format/coder/coding.h"
 #include "format/pack/views.h"
+#include "image/image/image.h"
 #include "relight/frame/parts.h"
 #include "relight/frame/relighter.h"
 #include "relight/frame/renderer.h"
@@ -14,7 +15,6 @@
 #include "relight/view/view.h"
 
 #include <math.h>
-#include <string.h>
 
 // ---------------------------------------------------------------- rectangles
 
@@ -42,19 +42,6 @@ static void hold(relume_renderer *r, int view, struct relume_rect wanted)
     *at = area(both) <= 2 * area(wanted) ? both : wanted;
 }
 
-static relume_status crop(struct relume_image *out, const struct relume_image *image,
-                          const struct relume_rect *at)
-{
-    const size_t channels = (size_t)image->channels, row = channels * (size_t)at->width;
-    const relume_status status = relume_image_create(out, at->width, at->height, image->channels);
-    for (size_t y = 0; !status && y < (size_t)at->height; y++)
-        memcpy(out->data + y * row,
-               image->data +
-                   channels * (((size_t)at->top + y) * (size_t)image->width + (size_t)at->left),
-               row * sizeof *out->data);
-    return status;
-}
-
 // ---------------------------------------------------------------- what a view is asked for
 
 // How near its surfaces are, which says how far a ray walks over its disparities. These are kept
@@ -76,7 +63,7 @@ static relume_status need_disparity(relume_renderer *r, int view)
         return RELUME_OK;
     relume_status status = renderer_need_disparity(r, view);
     if (!status)
-        status = crop(out, &r->disparity[view], &r->parts->at[view]);
+        status = image_part(out, &r->disparity[view], &r->parts->at[view]);
     relume_image_destroy(&r->disparity[view]);
     return status;
 }
@@ -87,7 +74,7 @@ static relume_status need_surface(relume_renderer *r, int view)
     struct relume_image whole = {0};
     relume_status status = p->surface.data ? RELUME_OK : renderer_surface(&whole, r, view);
     if (!status && whole.data)
-        status = crop(&p->surface, &whole, &r->parts->at[view]);
+        status = image_part(&p->surface, &whole, &r->parts->at[view]);
     relume_image_destroy(&whole);
     return status;
 }
@@ -236,7 +223,7 @@ static relume_status part_by_itself(struct relume_image *out, relume_renderer *r
     struct relume_rect at = *rect;
     at.left -= r->parts->at[view].left;
     at.top -= r->parts->at[view].top;
-    return status ? status : crop(out, &r->parts->image[view], &at);
+    return status ? status : image_part(out, &r->parts->image[view], &at);
 }
 
 relume_status relume_renderer_part(struct relume_image *out, relume_renderer *r, int view,
@@ -250,7 +237,7 @@ relume_status relume_renderer_part(struct relume_image *out, relume_renderer *r,
     if (renderer_goes_by_texels(r))
         return part_by_itself(out, r, view, rect);
     status = renderer_need(r, view);
-    return status ? status : crop(out, &r->image[SHOWN_LIGHT][view], rect);
+    return status ? status : image_part(out, &r->image[SHOWN_LIGHT][view], rect);
 }
 
 relume_status relume_renderer_detail(struct relume_image *out, relume_renderer *r, int view,

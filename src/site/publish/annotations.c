@@ -58,12 +58,27 @@ static relume_status copy(const struct site *site, const char *path, const char 
     return status;
 }
 
+static relume_status write_moved(const struct site *site, const relume_notes *notes,
+                                 const char *name)
+{
+    char *to = mem_format("%s/notes.json", name), *text = NULL;
+    relume_status status = to ? relume_notes_text(&text, notes) : RELUME_ENOMEM;
+    if (!status)
+        status = site_save_data(site, to, text, strlen(text));
+    mem_free(text);
+    mem_free(to);
+    return status;
+}
+
 relume_status annotations_write(const struct site *site, const relume_notes *notes,
-                                const char *path, const char *inside, const struct page *page)
+                                const char *path, const char *inside, const struct page *page,
+                                bool moved)
 {
     char *canvas = iiif_target(site, page);
     char *list = mem_format("%s/%s/iiif/notes.json", site->path, page->name);
-    relume_status status = canvas && list ? copy(site, path, inside, page->name) : RELUME_ENOMEM;
+    relume_status status = !canvas || !list ? RELUME_ENOMEM
+                           : moved          ? write_moved(site, notes, page->name)
+                                            : copy(site, path, inside, page->name);
     if (!status)
         status = relume_notes_write(notes, list, RELUME_NOTES_IIIF, canvas, site->log);
     mem_free(canvas);

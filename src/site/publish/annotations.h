@@ -11,8 +11,10 @@
 relume_status annotations_open(relume_notes **out, const struct site *site, const char *path,
                                relume_pack *pack);
 // As NAME/notes.json, and for IIIF as NAME/iiif/notes.json; `inside`: relume_pack_info.notes.
+// `moved` notes are written again.
 // RELUME_EIO, RELUME_ENOMEM, and where the list cannot be read again an input status.
 relume_status annotations_write(const struct site *site, const relume_notes *notes,
-                                const char *path, const char *inside, const struct page *page);
+                                const char *path, const char *inside, const struct page *page,
+                                bool moved);
 
 #endif

@@ -348,7 +348,7 @@ relume_status object_write(const struct site *site, struct page *page, const cha
     if (!status)
         status = iiif_write_object(site, page, noted);
     if (noted && !status)
-        status = annotations_write(site, notes, path, NULL, page);
+        status = annotations_write(site, notes, path, NULL, page, false);
     relume_notes_destroy(&notes);
     report->bytes = report->first_bytes = bytes;
     relume_baked_destroy(&b);

@@ -12,6 +12,7 @@
 #include "site/publish/names.h"
 #include "site/publish/object.h"
 #include "site/publish/page.h"
+#include "site/publish/part.h"
 #include "site/publish/picture.h"
 #include "site/publish/published.h"
 
@@ -97,6 +98,8 @@ static relume_status write_all(struct published *f, struct page *page, const cha
 {
     relume_notes *notes = NULL;
     relume_status status = annotations_open(&notes, f->site, path, f->pack);
+    if (!status)
+        status = part_keep(f->report->crop, f->pack, &notes, f->site);
     f->notes = !status && relume_notes_count(notes) > 0;
     f->mm_per_pixel = f->site->params->mm_per_pixel > 0.0 ? f->site->params->mm_per_pixel
                       : status                            ? 0.0
@@ -108,7 +111,8 @@ static relume_status write_all(struct published *f, struct page *page, const cha
     if (!status)
         status = iiif_write(f->site, page, f->pack, f->notes);
     if (!status && f->notes)
-        status = annotations_write(f->site, notes, path, relume_pack_info(f->pack)->notes, page);
+        status = annotations_write(f->site, notes, path, relume_pack_info(f->pack)->notes, page,
+                                   f->report->crop[2] > 0);
     if (!status)
         status = page_write(f->site, page, site_title);
     relume_notes_destroy(&notes);
@@ -142,8 +146,12 @@ static relume_status publish_file(struct site_build *w, int i, const struct site
     memcpy(report.name, w->names[i], sizeof report.name);
     const char *site_title = details_of_site(w->metadata, w->params).title;
     page->object = relume_kind_of(w->files[i]) == RELUME_KIND_BAKED;
-    relume_status status = page->object ? object_write(&here, page, w->files[i], &report)
-                                        : open_file(&f.pack, w->files[i], w->params);
+    relume_status status = !page->object ? open_file(&f.pack, w->files[i], w->params)
+                           : w->params->crop_auto || w->params->crop[2]
+                               ? log_fail(here.log, RELUME_EUNFIT,
+                                          "an object has no parts by themselves; --crop expects a "
+                                          "planar file or one slab")
+                               : object_write(&here, page, w->files[i], &report);
     if (!status && page->object) {
         status = page_write(&here, page, site_title);
     } else if (!status) {

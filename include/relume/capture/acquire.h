@@ -36,7 +36,7 @@ struct relume_acquire_params {
     // photographs. Default: balls where a member below describes them, else the list that lies
     // with the photographs, else one mirror ball.
     const char *lights;
-    bool near;                // positions: from two balls or more, or from `lights`
+    bool near;                // positions: from balls, or from `lights`
     const double (*ball)[3];  // [balls]: x, y, radius of the outlines, pixels; default: found
     int balls;                // at most 16; default: all mirror balls, one matte ball
     bool distant;             // directions, even where two balls show that lamps are near; default:

@@ -3,6 +3,7 @@
 #include "capture/acquire/acquire.h"
 
 #include "capture/acquire/ball.h"
+#include "capture/acquire/ramp.h"
 #include "capture/acquire/rays.h"
 #include "capture/manifest/loaded_lights.h"
 #include "core/base/log.h"
@@ -12,13 +13,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_FOUND = 6 };              // balls that are looked for unless a number is given
-static const double SMALLEST = 0.4;   // of the largest ball's radius: smaller ones are left out
-static const double TOO_WIDE = 12.0;  // degrees: what is that wide is no lamp in a mirror
-static const double DISAGREE = 3.0;   // degrees between balls: lights are near
-static const double UNEVEN = 0.03;    // error of a lamp's middle, of its width
-static const double STATED = 4.0;     // photographs with two balls that outweigh what balls state
-static const double BELOW = -0.05;    // z of a direction: the lamp stood behind the ball
+enum { MOST_FOUND = 6 };               // balls that are looked for unless a number is given
+static const double SMALLEST = 0.4;    // of the largest ball's radius: smaller ones are left out
+static const double TOO_WIDE = 12.0;   // degrees: what is that wide is no lamp in a mirror
+static const double DISAGREE = 3.0;    // degrees between balls: lights are near
+static const double RAMP_ERROR = 0.1;  // of a distance that brightness shows
+static const double UNEVEN = 0.03;     // error of a lamp's middle, of its width
+static const double STATED = 4.0;      // photographs with two balls that outweigh what balls state
+static const double BELOW = -0.05;     // z of a direction: the lamp stood behind the ball
 
 // ---------------------------------------------------------------- balls
 
@@ -549,6 +551,84 @@ static relume_status leave_still_out(struct acquisition *s, struct relume_ball_l
     return look_all(s, light);
 }
 
+// ---------------------------------------------------------------- one ball
+
+static relume_status measure_ramp(double *distance, const struct acquisition *s, vec3 origin)
+{
+    const struct relume_image **small = mem_array((size_t)s->shots, sizeof *small);
+    vec3 *direction = mem_array((size_t)s->shots, sizeof *direction);
+    relume_status status = small && direction ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < s->shots; i++) {
+        small[i] = &s->shot[i].small;
+        direction[i] = s->shot[i].direction;
+    }
+    const struct relume_ball *ball;
+    const int balls = acquire_balls_inside(&ball, s);
+    const struct ramp_search search = {.small = small,
+                                       .direction = direction,
+                                       .origin = origin,
+                                       .count = s->shots,
+                                       .step = acquire_small_step(s->width, s->height),
+                                       .ball = ball,
+                                       .balls = balls};
+    *distance = 0.0;
+    if (!status)
+        status = ramp_find(distance, &search);
+    mem_free(small);
+    mem_free(direction);
+    return status;
+}
+
+// Returns by how much a plane under lamps at that distance bends at its border, degrees, when they
+// are taken as distant: its slope is that of the brightness over the light from the side.
+static double bend_of(const struct acquisition *s, double distance)
+{
+    double height = 0.0;
+    for (int i = 0; i < s->shots; i++)
+        height += fmax(s->shot[i].direction.z, 0.0) / s->shots;
+    return atan(3.0 * height / distance) * 180.0 / M_PI;
+}
+
+static relume_status warn_ramp(struct acquisition *s, vec3 origin, const char *mend)
+{
+    double distance = 0.0;
+    relume_status status = RELUME_OK;
+    if (!s->p.distant && !s->p.near)
+        status = measure_ramp(&distance, s, origin);
+    if (status || !(distance > 0.0))
+        return status;
+    return acquire_warn(
+        s,
+        "brightness falls across the photographs as under lamps about %.1f widths of "
+        "the picture away: taken as distant, a plane bends by about %.0f degrees at "
+        "its border; %s",
+        0.5 * distance, bend_of(s, distance), mend);
+}
+
+// Places all lamps at one distance.
+static relume_status place_by_ramp(struct acquisition *s, const struct ball_rays *rays)
+{
+    double distance;
+    const relume_status status = measure_ramp(&distance, s, rays[0].origin[0]);
+    if (status)
+        return status;
+    if (!(distance > 0.0))
+        return log_fail(
+            s->p.log, RELUME_EUNFIT,
+            "positions of near lights need two balls or more, or one ball on a flat matte "
+            "surface over which the brightness shows how far they are; found 1 ball");
+    for (int i = 0; i < s->shots; i++) {
+        s->shot[i].position = ramp_place(rays[i].origin[0], rays[i].direction[0], distance);
+        s->shot[i].position_sigma = RAMP_ERROR * distance;
+    }
+    log_line(
+        s->p.log, RELUME_NOTE,
+        "the lamps stand about %.1f widths of the picture away, by how brightness falls across "
+        "it: all at this distance, which a second ball would measure for each",
+        0.5 * distance);
+    return RELUME_OK;
+}
+
 // Lamps so near that the balls see them in different directions get positions.
 static relume_status decide_near(struct acquisition *s, const struct ball_rays *rays)
 {
@@ -556,6 +636,9 @@ static relume_status decide_near(struct acquisition *s, const struct ball_rays *
     const double disagree = 2.0 * fit.distant * 180.0 / M_PI;
     if (s->p.near)
         return RELUME_OK;
+    if (s->out->balls == 1)
+        return warn_ramp(s, rays[0].origin[0],
+                         "--near places all lamps at that distance, a second ball each of them");
     if (!rays_show_near(&fit))
         return disagree > DISAGREE
                    ? acquire_warn(s,
@@ -644,7 +727,7 @@ static relume_status locate_all(struct acquisition *s, const struct relume_ball_
     if (!status)
         judge_errors(s, rays);
     if (!status && s->p.near)
-        status = place_lamps(s, rays);
+        status = s->out->balls > 1 ? place_lamps(s, rays) : place_by_ramp(s, rays);
     if (!status && s->p.near && s->p.matte)
         find_power(s);
     mem_free(rays);
@@ -653,9 +736,6 @@ static relume_status locate_all(struct acquisition *s, const struct relume_ball_
 
 static relume_status lights_from_balls(struct acquisition *s)
 {
-    if (s->p.near && s->p.balls == 1)
-        return log_fail(s->p.log, RELUME_EINVAL,
-                        "positions of near lights need two balls or more; found 1");
     relume_status status = find_balls(s);
     if (status)
         return status;
@@ -666,10 +746,6 @@ static relume_status lights_from_balls(struct acquisition *s)
         status = leave_still_out(s, light);
     if (!status)
         status = check_mirrors(s, light);
-    if (!status && s->p.near && s->out->balls < 2)
-        status =
-            log_fail(s->p.log, RELUME_EUNFIT,
-                     "positions of near lights need two balls or more; found %d", s->out->balls);
     if (!status)
         status = check_enough(s, light);
     if (!status && s->still)
@@ -860,6 +936,8 @@ relume_status acquire_find_lights(struct acquisition *s)
                                                             : lights_from_file(s);
     if (!status && s->p.lights && !acquire_has_poses(s->p.lights))
         status = acquire_ask_balls(s);
+    if (!status && s->p.lights)
+        status = warn_ramp(s, vec3_of(0.0, 0.0, 0.0), "--near takes positions from the list");
     for (int i = 0; i < s->shots; i++)
         relume_image_destroy(&s->shot[i].luma);
     return status ? status : weigh_exposures(s);

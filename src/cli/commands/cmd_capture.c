@@ -53,7 +53,7 @@ static const struct option options[] = {
          "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of "
          "a camera on the lamp"),
     FLAG("--near", near,
-         "the lamps stand near: find their positions by two balls or more, or take those of "
+         "the lamps stand near: find their positions by balls, two or more, or take those of "
          "--lights"),
     FLAG("--distant", distant,
          "directions of lights even where two balls show that lamps are near"),

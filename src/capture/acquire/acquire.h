@@ -229,7 +229,8 @@ relume_status acquire_judge(struct acquisition *s);
 relume_status acquire_check_blacks(struct acquisition *s);
 // Names photographs with other edges than most.
 relume_status acquire_name_scenes(struct acquisition *s);
-// Warns where the slopes of the surface belong to lights with another axis. RELUME_ENOMEM.
+// Warns where the slopes of the surface belong to lights with another axis, by the lumas. An input
+// status of the mask, RELUME_ENOMEM.
 relume_status acquire_check_relief(struct acquisition *s);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);

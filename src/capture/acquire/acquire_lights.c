@@ -860,7 +860,5 @@ relume_status acquire_find_lights(struct acquisition *s)
                                                             : lights_from_file(s);
     if (!status && s->p.lights && !acquire_has_poses(s->p.lights))
         status = acquire_ask_balls(s);
-    for (int i = 0; i < s->shots; i++)
-        relume_image_destroy(&s->shot[i].luma);
     return status ? status : weigh_exposures(s);
 }

@@ -580,7 +580,7 @@ static relume_status list_shots(struct acquisition *s)
     s->shots = s->photographs.count;
     for (int i = 0; i < s->shots; i++) {
         s->shot[i].number = i;
-        s->shot[i].sharpness = NAN;
+        s->shot[i].sharpness = s->shot[i].similarity = NAN;
         s->shot[i].path = s->photographs.path[i];
         s->shot[i].ball_path = s->balls.count ? s->balls.path[i] : NULL;
     }

@@ -23,7 +23,8 @@ static const double UPRIGHT = 0.5;  // z of normals: steeper ones end in occlusi
 static const float DARK = 0.05f;    // albedo, of the brightest tenth: nothing but noise
 static const double FLAT = 0.8;     // share of the crossings that change least: left out
 static const double RELIEF = 0.05;  // change of slopes over two pixels: 0.066 and more on paintings,
-                                    // 0.04 and less on printed boards
+                                    // 0.04 and less on printed boards. Smooth relief reaches it in
+                                    // smaller pictures, where noise falls.
 static const double FLOOR = 0.01;   // of the curl's square: errors of the normals
 // Geometric mean of the curl's square under the list as it should be, over that under the list: 1.0
 // and more on 43 sound captures, 0.70 and less where an axis of the same captures is mirrored.
@@ -160,8 +161,24 @@ static bool slopes_at(const struct relief *r, int x, int y, double pq[2])
     return true;
 }
 
+// Smooth relief rises above noise in smaller pictures.
+static void halve(struct relief *r)
+{
+    const int width = r->width / 2, height = r->height / 2;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < 3; c++) {
+                const float *from = r->g + 3 * (2 * ((size_t)y * (size_t)r->width + (size_t)x)) + c;
+                r->g[3 * ((size_t)y * (size_t)width + (size_t)x) + (size_t)c] =
+                    0.25f * (from[0] + from[3] + from[3 * r->width] + from[3 * r->width + 3]);
+            }
+    r->width = width;
+    r->height = height;
+}
+
 static void gather(struct relief *r)
 {
+    r->n = 0;
     for (int y = 1; y + 1 < r->height; y++)
         for (int x = 1; x + 1 < r->width; x++) {
             double left[2], right[2], up[2], down[2];
@@ -265,11 +282,15 @@ static relume_status judge(struct relief *r, const double inverse[9])
         status = find_least(r);
     if (status)
         return status;
-    gather(r);
-    if (r->n < LEAST_CROSSINGS)
-        return RELUME_OK;
-    status = keep_steep(r);
-    return status || !r->n ? status : compare(r);
+    for (; !status; halve(r)) {
+        gather(r);
+        if (r->n < LEAST_CROSSINGS)
+            return RELUME_OK;
+        status = keep_steep(r);
+        if (!status && r->n)
+            return compare(r);
+    }
+    return status;
 }
 
 relume_status acquire_check_relief(struct acquisition *s)

@@ -34,8 +34,8 @@ static const double LEAST_DETAIL = 2e-3;  // mean square of the logarithm's diff
 // and more after a Gaussian blur of 1.5 pixels.
 static const double BLURRED = 0.6, UNUSUAL_BLUR = 6.0;  // ...; times the median
 static const double ELSEWHERE = 25.0;                   // degrees
-static const double NEIGHBOURS = 1.4;                   // times the angle to the nearest light
-static const double BETTER = 0.6;       // of the difference that is left under the light elsewhere
+static const double NEIGHBOURS = 2.0;                   // times the angle to the nearest light
+static const double BETTER = 0.5;       // of the difference that is left under the light elsewhere
 static const double EVEN = 0.01;        // variation of an even picture, at most
 static const double UNEXPLAINED = 1.2;  // of a photograph's own variation: it is of something else
 static const double UNLIKE = 0.5;       // share of the usual similarity

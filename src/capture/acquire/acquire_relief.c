@@ -194,19 +194,18 @@ static void gather(struct relief *r)
         }
 }
 
-// Keeps crossings where slopes change most, at most MOST_CROSSINGS of them, as unit vectors; none
-// where nothing stands out.
-static relume_status keep_steep(struct relief *r)
+// Keeps crossings where slopes change most, at most MOST_CROSSINGS of them, as unit vectors.
+static relume_status keep_steep(struct relief *r, bool *stands_out)
 {
     double *sorted = mem_copy(r->size, (size_t)r->n, sizeof *sorted);
     if (!sorted)
         return RELUME_ENOMEM;
     sort_doubles(sorted, (size_t)r->n);
-    const double least = sorted[(size_t)(FLAT * r->n)];
+    const double least = fmax(sorted[(size_t)(FLAT * r->n)], 1e-9);
     const int step = (int)((1.0 - FLAT) * r->n) / MOST_CROSSINGS + 1;
     int found = 0, kept = 0;
     mem_free(sorted);
-    for (int i = 0; i < r->n && least > RELIEF; i++) {
+    for (int i = 0; i < r->n; i++) {
         if (r->size[i] < least || found++ % step)
             continue;
         for (int k = 0; k < DERIVATIVES; k++)
@@ -214,6 +213,7 @@ static relume_status keep_steep(struct relief *r)
         kept++;
     }
     r->n = kept;
+    *stands_out = least > RELIEF;
     return RELUME_OK;
 }
 
@@ -246,28 +246,56 @@ static void name_turn(char *out, size_t size, double degrees, bool mirrored)
                  mirrored ? "y is negated and " : "", degrees, degrees + 180.0);
 }
 
-static relume_status compare(const struct relief *r)
+// The list that leaves least curl.
+struct better {
+    double left;  // of the curl under the list as it is
+    double degrees;
+    bool mirrored;
+};
+
+static struct better find_better(const struct relief *r)
 {
-    const double as_given = curl_of(r, 0.0, false);
-    double least = INFINITY, at = 0.0;
-    bool mirrored = false;
+    struct better b = {.left = INFINITY};
     for (int k = 0; k < 2 * STEPS; k++) {
         const double degrees = 180.0 / STEPS * (k / 2), curl = curl_of(r, degrees, k % 2 == 1);
         const bool is_near = k % 2 == 0 && (degrees < LEAST_TURN || degrees > 180.0 - LEAST_TURN);
-        if (!is_near && curl < least) {
-            least = curl;
-            at = degrees;
-            mirrored = k % 2 == 1;
-        }
+        if (!is_near && curl < b.left)
+            b = (struct better){curl, degrees, k % 2 == 1};
     }
-    if (least > CLEAR * as_given)
-        return RELUME_OK;
+    b.left /= curl_of(r, 0.0, false);
+    return b;
+}
+
+static relume_status say(struct acquisition *s, const struct better *b)
+{
     char mend[128];
-    name_turn(mend, sizeof mend, at, mirrored);
-    return acquire_warn(r->s,
+    name_turn(mend, sizeof mend, b->degrees, b->mirrored);
+    return acquire_warn(s,
                         "%s: no surface looks like the photographs under these lights: its slopes "
                         "have curl, of which %.0f %% is left if %s; check the list's axes",
-                        r->s->p.lights, 100.0 * least / as_given, mend);
+                        s->p.lights, 100.0 * b->left, mend);
+}
+
+// Doubts the list where both the picture as it is and the first in which relief stands out do.
+static relume_status compare(struct relief *r)
+{
+    struct better first = {0};
+    bool stands_out = false;
+    for (int level = 0; !stands_out; level++, halve(r)) {
+        gather(r);
+        if (r->n < LEAST_CROSSINGS)
+            return RELUME_OK;
+        const relume_status status = keep_steep(r, &stands_out);
+        if (status)
+            return status;
+        if (level > 0 && !stands_out)
+            continue;
+        const struct better b = find_better(r);
+        if (b.left > CLEAR)
+            return RELUME_OK;
+        first = level == 0 ? b : first;
+    }
+    return say(r->s, &first);
 }
 
 static relume_status judge(struct relief *r, const double inverse[9])
@@ -280,17 +308,7 @@ static relume_status judge(struct relief *r, const double inverse[9])
         status = apply_mask(r);
     if (!status)
         status = find_least(r);
-    if (status)
-        return status;
-    for (; !status; halve(r)) {
-        gather(r);
-        if (r->n < LEAST_CROSSINGS)
-            return RELUME_OK;
-        status = keep_steep(r);
-        if (!status && r->n)
-            return compare(r);
-    }
-    return status;
+    return status ? status : compare(r);
 }
 
 relume_status acquire_check_relief(struct acquisition *s)

@@ -227,8 +227,8 @@ bool acquire_can_judge(const struct acquisition *s);
 relume_status acquire_judge(struct acquisition *s);
 // Warns of light that belongs to no lamp. RELUME_ENOMEM.
 relume_status acquire_check_blacks(struct acquisition *s);
-// Returns the median similarity of a photograph's edges to those of some others; NAN where they have
-// none. One photograph in ACQUIRE_SIMILAR tells what is usual.
+// Returns the median correlation of a photograph's edges with several other photographs; NAN
+// without edges. One photograph in ACQUIRE_SIMILAR tells what is usual.
 float acquire_similarity(const struct acquisition *s, int i);
 enum { ACQUIRE_SIMILAR = 4 };
 // Names photographs with other edges than most.

@@ -43,7 +43,7 @@ float acquire_similarity(const struct acquisition *s, int i)
     return (float)median(found, n);
 }
 
-// Where photographs are judged by their lights, few are asked about. A folder's report has all.
+// Few photographs are enough where they are judged by their lights. A report of a folder has all.
 static void measure_similarity(struct acquisition *s)
 {
     const int step = s->dir || !acquire_can_judge(s) ? 1 : ACQUIRE_SIMILAR;

@@ -20,17 +20,19 @@
 
 enum { LEAST_CROSSINGS = 400, MOST_CROSSINGS = 20000, DERIVATIVES = 4, STEPS = 36 };
 static const double UPRIGHT = 0.5;  // z of normals: steeper ones end in occlusions
-static const float DARK = 0.05f;    // albedo, of the brightest tenth: nothing but noise
+static const float DARK = 0.05f;    // albedo, of the brightest tenth: noise rules
 static const double FLAT = 0.8;     // share of the crossings that change least: left out
-static const double RELIEF = 0.05;  // change of slopes over two pixels: 0.066 and more on paintings,
-                                    // 0.04 and less on printed boards. Smooth relief reaches it in
-                                    // smaller pictures, where noise falls.
+static const double RELIEF = 0.05;  // change of slopes over two pixels: 0.066 and more on
+                                    // paintings, 0.04 and less on printed boards. Smooth relief
+                                    // reaches it in smaller pictures, where noise falls.
 static const double FLOOR = 0.01;   // of the curl's square: errors of the normals
-// Geometric mean of the curl's square under the list as it should be, over that under the list: 1.0
-// and more on 43 sound captures, 0.70 and less where an axis of the same captures is mirrored.
+// Geometric mean of the curl's square, relative to the list as it is: 1.0 and more on 43 sound
+// captures, 0.70 and less where an axis of the same captures is mirrored.
 static const double CLEAR = 0.75;
-static const double LEAST_TURN = 20.0;   // degrees: by less, other errors bend slopes
-static const double MOST_NOISE = 250.0;  // variance of a normal over that of the mean sample
+static const double SURELY = 0.35;  // the same, of relief that does not stand out: 0.46 and more on
+                                    // printed boards
+static const double LEAST_TURN = 20.0;   // degrees: other errors make smaller turns
+static const double MOST_NOISE = 250.0;  // variance of a normal over a sample's
 
 struct relief {
     struct acquisition *s;
@@ -85,8 +87,8 @@ static relume_status make_photo(struct relume_image *out, const struct acquisiti
     const relume_status status = relume_image_create(out, from->width, from->height, 1);
     for (size_t k = 0; !status && k < n; k++) {
         const float *p = from->data + k * (size_t)from->channels;
-        out->data[k] = (from->channels == 3 ? (p[0] + p[1] + p[2]) / 3.0f : p[0] * p[0]) /
-                       fmaxf(power, 1e-6f);
+        out->data[k] =
+            (from->channels == 3 ? (p[0] + p[1] + p[2]) / 3.0f : p[0] * p[0]) / fmaxf(power, 1e-6f);
     }
     return status || s->p.align ? status : acquire_move_back(out, shift);
 }
@@ -100,8 +102,8 @@ static relume_status add_photo(struct relief *r, const struct shot *shot, const 
     if (!counts(shot, l))
         return RELUME_OK;
     for (int k = 0; k < 3; k++)
-        weight[k] = (float)(inverse[3 * k] * v[0] + inverse[3 * k + 1] * v[1] +
-                            inverse[3 * k + 2] * v[2]);
+        weight[k] =
+            (float)(inverse[3 * k] * v[0] + inverse[3 * k + 1] * v[1] + inverse[3 * k + 2] * v[2]);
     const relume_status status = make_photo(&photo, r->s, shot);
     for (size_t k = 0; !status && k < (size_t)r->width * (size_t)r->height; k++)
         for (int c = 0; c < 3; c++)
@@ -276,7 +278,8 @@ static relume_status say(struct acquisition *s, const struct better *b)
                         s->p.lights, 100.0 * b->left, mend);
 }
 
-// Doubts the list where both the picture as it is and the first in which relief stands out do.
+// Doubts the list where the picture as it is surely does, or it and the first in which relief
+// stands out.
 static relume_status compare(struct relief *r)
 {
     struct better first = {0};
@@ -294,6 +297,7 @@ static relume_status compare(struct relief *r)
         if (b.left > CLEAR)
             return RELUME_OK;
         first = level == 0 ? b : first;
+        stands_out |= level == 0 && b.left < SURELY;
     }
     return say(r->s, &first);
 }

@@ -51,9 +51,9 @@ relume_status acquire_fit_small(struct acquisition *s, const relume_capture *cap
         status = relume_capture_create(&small, &manifest, &pictures,
                                        relume_capture_params(.log = s->p.log));
     if (!status)
-        status =
-            relume_photometric_fit(&s->out->photometric, small, 0,
-                                   relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
+        status = relume_photometric_fit(
+            &s->out->photometric, small, 0,
+            relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     relume_capture_destroy(&small);
     mem_free(data);
     mem_free(mask);

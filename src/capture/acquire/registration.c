@@ -187,7 +187,7 @@ static double climb(const struct relume_image *all, const struct relume_image *i
                     int position[2], double found[2])
 {
     double near[3][3] = {{0.0}}, known[3][3];
-    int by[2] = {3, 3};  // how far the last step went; more: nothing is known
+    int by[2] = {3, 3};  // the last step; 3: no neighbour is known yet
     for (int step = 0; step < CLIMB && (by[0] || by[1]); step++) {
         int best[2] = {0, 0};
         memcpy(known, near, sizeof known);

@@ -347,8 +347,7 @@ static relume_status name_outliers(struct acquisition *s)
 relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
 {
     struct relume_acquisition *out = s->out;
-    const bool has_nothing_to_say = s->coplanar || (s->judged && s->witnessed);
-    if (!s->dir && has_nothing_to_say)
+    if (!s->dir && (s->coplanar || s->judged))  // it has nothing to say
         return RELUME_OK;
     relume_status status =
         !acquire_keeps_surface(s) && s->width > s->shot[0].small.width
@@ -358,8 +357,6 @@ relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
                   relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     if (status == RELUME_EUNFIT)  // the lights do not allow it; that has been said
         return RELUME_OK;
-    if (!status && s->p.lights)
-        status = acquire_check_relief(s);
     if (!status && !s->judged)
         status = name_outliers(s);
     if (!status && !s->judged && mean_miss(&out->photometric) > CONTRADICTION)
@@ -369,8 +366,6 @@ relume_status acquire_fit(struct acquisition *s, const relume_capture *capture)
             "of unequal brightness (--refine-brightness), or linear photographs (--transfer "
             "linear)?",
             100.0 * mean_miss(&out->photometric));
-    if (!s->dir && s->judged)  // it may know some photographs alone
-        relume_photometric_destroy(&out->photometric);
     return status;
 }
 
@@ -405,6 +400,10 @@ relume_status acquire_look(struct acquisition *s)
         status = acquire_judge(s);
     if (!status)
         status = acquire_check_blacks(s);
+    if (!status)
+        status = acquire_check_relief(s);
+    for (int i = 0; i < s->shots; i++)
+        relume_image_destroy(&s->shot[i].luma);
     if (!status)
         status = acquire_crop(s);
     if (!status)
@@ -579,7 +578,7 @@ static relume_status list_shots(struct acquisition *s)
     s->shots = s->photographs.count;
     for (int i = 0; i < s->shots; i++) {
         s->shot[i].number = i;
-        s->shot[i].sharpness = NAN;
+        s->shot[i].sharpness = s->shot[i].similarity = NAN;
         s->shot[i].path = s->photographs.path[i];
         s->shot[i].ball_path = s->balls.count ? s->balls.path[i] : NULL;
     }

@@ -232,9 +232,14 @@ bool acquire_can_judge(const struct acquisition *s);
 relume_status acquire_judge(struct acquisition *s);
 // Warns of light that belongs to no lamp. RELUME_ENOMEM.
 relume_status acquire_check_blacks(struct acquisition *s);
+// Returns the median correlation of a photograph's edges with several other photographs; NAN
+// without edges. One photograph in ACQUIRE_SIMILAR tells what is usual.
+float acquire_similarity(const struct acquisition *s, int i);
+enum { ACQUIRE_SIMILAR = 4 };
 // Names photographs with other edges than most.
 relume_status acquire_name_scenes(struct acquisition *s);
-// Warns where the slopes of the surface belong to lights with another axis. RELUME_ENOMEM.
+// Warns where the slopes of the surface belong to lights with another axis, by the lumas. An input
+// status of the mask, RELUME_ENOMEM.
 relume_status acquire_check_relief(struct acquisition *s);
 // Uneven coverage, coplanar lights.
 relume_status acquire_check_lights(struct acquisition *s);

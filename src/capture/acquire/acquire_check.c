@@ -27,11 +27,12 @@ static double median(double *v, int n)
     return v[n / 2];
 }
 
-// The median similarity of a photograph to some of the others.
-static float similarity(const struct acquisition *s, int i)
+float acquire_similarity(const struct acquisition *s, int i)
 {
     double found[PAIRS];
     int n = 0;
+    if (isfinite(s->shot[i].similarity))
+        return s->shot[i].similarity;
     const int step = s->shots > PAIRS ? (s->shots - 1) / PAIRS : 1;
     for (int k = 1; k < s->shots && n < PAIRS; k += step) {
         const double like =
@@ -42,10 +43,12 @@ static float similarity(const struct acquisition *s, int i)
     return (float)median(found, n);
 }
 
+// Few photographs are enough where they are judged by their lights. A report of a folder has all.
 static void measure_similarity(struct acquisition *s)
 {
-    for (int i = 0; i < s->shots; i++)
-        s->shot[i].similarity = similarity(s, i);
+    const int step = s->dir || !acquire_can_judge(s) ? 1 : ACQUIRE_SIMILAR;
+    for (int i = 0; i < s->shots; i += step)
+        s->shot[i].similarity = acquire_similarity(s, i);
 }
 
 relume_status acquire_name_scenes(struct acquisition *s)
@@ -54,6 +57,8 @@ relume_status acquire_name_scenes(struct acquisition *s)
     if (!all)
         return RELUME_ENOMEM;
     int known = 0;  // of others nothing can be said: pictures without edges, numbers too large
+    for (int i = 0; i < s->shots; i++)
+        s->shot[i].similarity = acquire_similarity(s, i);
     for (int i = 0; i < s->shots; i++)
         if (isfinite(s->shot[i].similarity))
             all[known++] = (double)s->shot[i].similarity;

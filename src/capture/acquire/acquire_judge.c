@@ -34,8 +34,8 @@ static const double LEAST_DETAIL = 2e-3;  // mean square of the logarithm's diff
 // and more after a Gaussian blur of 1.5 pixels.
 static const double BLURRED = 0.6, UNUSUAL_BLUR = 6.0;  // ...; times the median
 static const double ELSEWHERE = 25.0;                   // degrees
-static const double NEIGHBOURS = 1.4;                   // times the angle to the nearest light
-static const double BETTER = 0.6;       // of the difference that is left under the light elsewhere
+static const double NEIGHBOURS = 2.0;                   // times the angle to the nearest light
+static const double BETTER = 0.5;       // of the difference that is left under the light elsewhere
 static const double EVEN = 0.01;        // variation of an even picture, at most
 static const double UNEXPLAINED = 1.2;  // of a photograph's own variation: it is of something else
 static const double UNLIKE = 0.5;       // share of the usual similarity
@@ -497,8 +497,10 @@ static relume_status find_strange(struct judge *j, double usual_similarity, bool
     for (int i = 0; !status && i < j->n && j->n > LEFT * j->all;) {
         struct shot *shot = &s->shot[j->shot[i]];
         const double left = left_under(j, i, j->direction[i]);
-        const bool is = (double)shot->similarity < UNLIKE * usual_similarity || !unlike;
-        if (!is || !(left > (unlike ? OTHER : UNEXPLAINED)) || shot->black > DARK) {
+        const bool is = left > (unlike ? OTHER : UNEXPLAINED) && shot->black <= DARK;
+        if (is && unlike)
+            shot->similarity = acquire_similarity(s, j->shot[i]);
+        if (!is || (unlike && !((double)shot->similarity < UNLIKE * usual_similarity))) {
             i++;
             continue;
         }
@@ -557,9 +559,11 @@ static relume_status find_blurred(struct judge *j)
 static double usual_similarity(struct judge *j)
 {
     int known = 0;
-    for (int i = 0; i < j->all; i++)
-        if (isfinite(j->s->shot[i].similarity))
-            j->sorted[known++] = (double)j->s->shot[i].similarity;
+    for (int i = 0; i < j->all; i += ACQUIRE_SIMILAR) {
+        const float like = acquire_similarity(j->s, i);
+        if (isfinite(like))
+            j->sorted[known++] = (double)like;
+    }
     sort_doubles(j->sorted, (size_t)known);
     return known ? j->sorted[known / 2] : 0.0;
 }

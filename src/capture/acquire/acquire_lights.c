@@ -938,7 +938,5 @@ relume_status acquire_find_lights(struct acquisition *s)
         status = acquire_ask_balls(s);
     if (!status && s->p.lights)
         status = warn_ramp(s, vec3_of(0.0, 0.0, 0.0), "--near takes positions from the list");
-    for (int i = 0; i < s->shots; i++)
-        relume_image_destroy(&s->shot[i].luma);
     return status ? status : weigh_exposures(s);
 }

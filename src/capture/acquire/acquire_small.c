@@ -31,26 +31,6 @@ static relume_status shrink_mask(float **out, const struct acquisition *s,
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
-// Fits all photographs; where only the list's axes are doubtful, some are enough.
-static relume_status fit(struct acquisition *s, const relume_capture *small)
-{
-    enum { ENOUGH = 24 };
-    int light[ENOUGH];
-    relume_capture *some = NULL;
-    relume_status status = RELUME_OK;
-    if (!s->dir && s->judged && s->shots > ENOUGH) {
-        for (int i = 0; i < ENOUGH; i++)
-            light[i] = i * s->shots / ENOUGH;
-        status = relume_capture_select(&some, small, light, ENOUGH);
-    }
-    if (!status)
-        status = relume_photometric_fit(
-            &s->out->photometric, some ? some : small, 0,
-            relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
-    relume_capture_destroy(&some);
-    return status;
-}
-
 relume_status acquire_fit_small(struct acquisition *s, const relume_capture *capture)
 {
     const struct relume_image *first = &s->shot[0].small;
@@ -71,7 +51,9 @@ relume_status acquire_fit_small(struct acquisition *s, const relume_capture *cap
         status = relume_capture_create(&small, &manifest, &pictures,
                                        relume_capture_params(.log = s->p.log));
     if (!status)
-        status = fit(s, small);
+        status = relume_photometric_fit(
+            &s->out->photometric, small, 0,
+            relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     relume_capture_destroy(&small);
     mem_free(data);
     mem_free(mask);

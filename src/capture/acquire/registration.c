@@ -83,63 +83,96 @@ static void make_edges_of(void *context, size_t i, int worker)
     r->status[i] = make_edges(&r->edges[i], &r->s->shot[i].luma);
 }
 
-// Adds the picture, shifted back by (dx, dy), to a sum; its border is repeated.
-static void add_shifted(struct relume_image *sum, const struct relume_image *image, int dx, int dy)
+// Adds the picture, shifted back by (dx, dy), `times` to a sum; its border is repeated.
+static void add_shifted(struct relume_image *sum, const struct relume_image *image, int dx, int dy,
+                        float times)
 {
     const int w = sum->width, h = sum->height;
     for (int y = 0; y < h; y++) {
         const float *row = image->data + (size_t)index_clamped(y + dy, h) * (size_t)w;
         float *out = sum->data + (size_t)y * (size_t)w;
         for (int x = 0; x < w; x++)
-            out[x] += row[index_clamped(x + dx, w)];
+            out[x] += times * row[index_clamped(x + dx, w)];
     }
 }
 
 static void add_edges(struct registration *r, const struct edges *e)
 {
     const double scale = 1 << COARSE;
-    add_shifted(&r->fine, &e->fine, (int)lround(e->x), (int)lround(e->y));
-    add_shifted(&r->coarse, &e->coarse, (int)lround(e->x / scale), (int)lround(e->y / scale));
+    add_shifted(&r->fine, &e->fine, (int)lround(e->x), (int)lround(e->y), 1.0f);
+    add_shifted(&r->coarse, &e->coarse, (int)lround(e->x / scale), (int)lround(e->y / scale), 1.0f);
 }
 
-struct pair {
-    const struct relume_image *all, *image;
-    int own[2];  // shift at which `image` is part of the sum
-    float part;  // 1 where it is, else 0
+// Makes the sum without a picture that is part of it, shifted back by (dx, dy).
+static relume_status leave_out(struct relume_image *out, const struct relume_image *sum,
+                               const struct relume_image *image, double dx, double dy)
+{
+    const relume_status status = relume_image_create(out, sum->width, sum->height, 1);
+    if (status)
+        return status;
+    memcpy(out->data, sum->data, (size_t)sum->width * (size_t)sum->height * sizeof *sum->data);
+    add_shifted(out, image, (int)lround(dx), (int)lround(dy), -1.0f);
+    return RELUME_OK;
+}
+
+// Sums over a row, four pixels at a time (a vector type of GCC and Clang, as in hdr/correlate.c).
+typedef float four __attribute__((vector_size(16), aligned(4), may_alias));
+struct sums {
+    four a, b, aa, bb, ab;
 };
 
-// The correlation of `all`, without the part of `image` in it, with `image` moved by (dx, dy).
-static double correlate(const struct pair *p, int dx, int dy)
+static void add_four(struct sums *sums, four a, four b)
 {
-    const int w = p->all->width, h = p->all->height;
-    const int border = (w > h ? w : h) / 16 + 1;
-    double a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0, n = 0.0;
-    for (int y = border; y < h - border; y++) {
-        if (y + dy < 0 || y + dy >= h)
-            continue;
-        const int v = index_clamped(y + p->own[1], h);
-        const float *all = p->all->data + (size_t)y * (size_t)w;
-        const float *own = p->image->data + (size_t)v * (size_t)w;
-        const float *image = p->image->data + (size_t)(y + dy) * (size_t)w;
-        float ra = 0.0f, rb = 0.0f, raa = 0.0f, rbb = 0.0f, rab = 0.0f;
-        for (int x = border > -dx ? border : -dx; x < w - border && x + dx < w; x++) {
-            const float s = all[x] - p->part * own[index_clamped(x + p->own[0], w)];
-            const float t = image[x + dx];
-            ra += s;
-            rb += t;
-            raa += s * s;
-            rbb += t * t;
-            rab += s * t;
-            n += 1.0;
-        }
-        a += (double)ra;
-        b += (double)rb;
-        aa += (double)raa;
-        bb += (double)rbb;
-        ab += (double)rab;
+    sums->a += a;
+    sums->b += b;
+    sums->aa += a * a;
+    sums->bb += b * b;
+    sums->ab += a * b;
+}
+
+static double total(four v, four w)
+{
+    v += w;
+    return ((double)v[0] + (double)v[1]) + ((double)v[2] + (double)v[3]);
+}
+
+// Moments of pairs of pixels.
+struct pair {
+    double a, b, aa, bb, ab, n;
+};
+
+static void add_row(struct pair *pair, const float *a, const float *b, int n)
+{
+    struct sums even = {{0}, {0}, {0}, {0}, {0}}, odd = even;
+    int x = 0;
+    for (; x + 8 <= n; x += 8) {
+        add_four(&even, *(const four *)(a + x), *(const four *)(b + x));
+        add_four(&odd, *(const four *)(a + x + 4), *(const four *)(b + x + 4));
     }
-    const double va = aa - a * a / n, vb = bb - b * b / n;
-    return n > 0.0 && va > 0.0 && vb > 0.0 ? (ab - a * b / n) / sqrt(va * vb) : -1.0;
+    for (; x < n; x++)
+        add_four(&odd, (four){a[x]}, (four){b[x]});
+    pair->a += total(even.a, odd.a);
+    pair->b += total(even.b, odd.b);
+    pair->aa += total(even.aa, odd.aa);
+    pair->bb += total(even.bb, odd.bb);
+    pair->ab += total(even.ab, odd.ab);
+    pair->n += n;
+}
+
+// The correlation of `all` with `image` moved by (dx, dy).
+static double correlate(const struct relume_image *all, const struct relume_image *image, int dx,
+                        int dy)
+{
+    const int w = all->width, h = all->height;
+    const int border = (w > h ? w : h) / 16 + 1;
+    const int from = border > -dx ? border : -dx, to = w - (border > dx ? border : dx);
+    struct pair p = {0};
+    for (int y = border; y < h - border && from < to; y++)
+        if (y + dy >= 0 && y + dy < h)
+            add_row(&p, all->data + (ptrdiff_t)y * w + from,
+                    image->data + (ptrdiff_t)(y + dy) * w + from + dx, to - from);
+    const double va = p.aa - p.a * p.a / p.n, vb = p.bb - p.b * p.b / p.n;
+    return p.n > 0.0 && va > 0.0 && vb > 0.0 ? (p.ab - p.a * p.b / p.n) / sqrt(va * vb) : -1.0;
 }
 
 // How far the top of a parabola through three neighbours lies from the middle one.
@@ -149,44 +182,47 @@ static double top_of(double before, double at, double after)
     return bend < 0.0 ? fmax(-0.5, fmin(0.5, 0.5 * (before - after) / bend)) : 0.0;
 }
 
-static double climb(const struct pair *p, int position[2], double found[2])
+// Moves to the best of nine neighbouring positions until none is better; `near` remembers them.
+static double climb(const struct relume_image *all, const struct relume_image *image,
+                    int position[2], double found[2])
 {
-    double near[3][3];
-    int last[2] = {position[0] + 9, position[1]};
-    for (int step = 0; step < CLIMB && (last[0] != position[0] || last[1] != position[1]); step++) {
+    double near[3][3] = {{0.0}}, known[3][3];
+    int by[2] = {3, 3};  // the last step; 3: no neighbour is known yet
+    for (int step = 0; step < CLIMB && (by[0] || by[1]); step++) {
         int best[2] = {0, 0};
-        memcpy(last, position, sizeof last);
-        for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++)
-                near[j + 1][i + 1] = correlate(p, last[0] + i, last[1] + j);
+        memcpy(known, near, sizeof known);
+        for (int j = 0; j < 3; j++)
+            for (int i = 0; i < 3; i++) {
+                const int x = i + by[0], y = j + by[1];
+                near[j][i] = x >= 0 && y >= 0 && x < 3 && y < 3
+                                 ? known[y][x]
+                                 : correlate(all, image, position[0] + i - 1, position[1] + j - 1);
+            }
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++)
                 if (near[j + 1][i + 1] > near[best[1] + 1][best[0] + 1]) {
                     best[0] = i;
                     best[1] = j;
                 }
-        position[0] = last[0] + best[0];
-        position[1] = last[1] + best[1];
+        memcpy(by, best, sizeof by);
+        position[0] += by[0];
+        position[1] += by[1];
     }
-    found[0] = last[0] + top_of(near[1][0], near[1][1], near[1][2]);
-    found[1] = last[1] + top_of(near[0][1], near[1][1], near[2][1]);
+    found[0] = position[0] - by[0] + top_of(near[1][0], near[1][1], near[1][2]);
+    found[1] = position[1] - by[1] + top_of(near[0][1], near[1][1], near[2][1]);
     return near[1][1];
 }
 
 // Where `e` lies on a pair of pictures; returns the correlation there.
 static double position_on(const struct edges *e, const struct relume_image *fine,
-                          const struct relume_image *coarse, float part, double found[2])
+                          const struct relume_image *coarse, double found[2])
 {
-    const double scale = 1 << COARSE;
-    const struct pair near = {fine, &e->fine, {(int)lround(e->x), (int)lround(e->y)}, part};
-    const struct pair far = {
-        coarse, &e->coarse, {(int)lround(e->x / scale), (int)lround(e->y / scale)}, part};
     // from the best position on the coarse picture, from where it was, and from where most are
-    int start[3][2] = {{0, 0}, {near.own[0], near.own[1]}, {0, 0}};
+    int start[3][2] = {{0, 0}, {(int)lround(e->x), (int)lround(e->y)}, {0, 0}};
     double best = -2.0;
     for (int j = -REACH; j <= REACH; j++)
         for (int i = -REACH; i <= REACH; i++) {
-            const double like = correlate(&far, i, j);
+            const double like = correlate(coarse, &e->coarse, i, j);
             if (like > best) {
                 best = like;
                 start[0][0] = i * (1 << COARSE);
@@ -204,7 +240,7 @@ static double position_on(const struct edges *e, const struct relume_image *fine
                      !memcmp(start[k], top[j], sizeof start[k]);
         if (again)
             continue;
-        const double like = climb(&near, top[k], at);
+        const double like = climb(fine, &e->fine, top[k], at);
         if (like > best) {
             best = like;
             memcpy(found, at, sizeof at);
@@ -213,13 +249,33 @@ static double position_on(const struct edges *e, const struct relume_image *fine
     return best;
 }
 
+// On the edges of all others.
+static relume_status position_among(struct edges *e, const struct registration *r, double found[2])
+{
+    const double scale = 1 << COARSE;
+    struct relume_image fine = {0}, coarse = {0};
+    relume_status status = leave_out(&fine, &r->fine, &e->fine, e->x, e->y);
+    if (!status)
+        status = leave_out(&coarse, &r->coarse, &e->coarse, e->x / scale, e->y / scale);
+    if (!status)
+        e->like = position_on(e, &fine, &coarse, found);
+    relume_image_destroy(&fine);
+    relume_image_destroy(&coarse);
+    return status;
+}
+
 static void find_position(void *context, size_t at, int worker)
 {
     struct registration *r = context;
     struct edges *e = &r->edges[at];
     double found[2];
     (void)worker;
-    e->like = position_on(e, &r->fine, &r->coarse, e->here ? 1.0f : 0.0f, found);
+    if (e->here)
+        r->status[at] = position_among(e, r, found);
+    else
+        e->like = position_on(e, &r->fine, &r->coarse, found);
+    if (r->status[at])
+        return;
     e->x = found[0];
     e->y = found[1];
 }
@@ -232,7 +288,7 @@ static void follow(struct registration *r)
     for (int i = 1; i < r->s->shots; i++) {
         struct edges *e = &r->edges[i];
         double step[2];
-        const double like = position_on(e, &last->fine, &last->coarse, 0.0f, step);
+        const double like = position_on(e, &last->fine, &last->coarse, step);
         const bool stays = like < ALIKE || hypot(step[0], step[1]) < SAME_POSITION;
         e->x = last->x + (stays ? 0.0 : step[0]);
         e->y = last->y + (stays ? 0.0 : step[1]);
@@ -294,6 +350,8 @@ static relume_status find_positions(struct registration *r)
     for (int round = 0; !status && round < ROUNDS; round++) {
         sum_edges(r);
         thread_for(r->s->p.threads, n, find_position, r);
+        for (size_t i = 0; i < n && !status; i++)
+            status = r->status[i];
         centre(r);
     }
     return status;

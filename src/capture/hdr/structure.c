@@ -7,7 +7,11 @@
 
 #include <math.h>
 
-enum { HALF = 8 };  // of the surroundings
+enum {
+    HALF = 8,    // of the surroundings
+    CHUNK = 64,  // pixels whose sums are kept
+    BAND = 32    // rows
+};
 static const double quiet = 0.1;
 
 struct luma {
@@ -91,23 +95,48 @@ static void sum_row(void *context, size_t row, int worker)
     }
 }
 
-static void normalise_row(void *context, size_t row, int worker)
+// Adds a row of sums, its border repeated, `times`.
+static void add_row(double sum[CHUNK], const struct relume_image *from, int row, size_t first,
+                    size_t n, double times)
+{
+    const size_t i = (size_t)index_clamped(row, from->height) * (size_t)from->width + first;
+    for (size_t x = 0; x < n; x++)
+        sum[x] += times * (double)from->data[i + x];
+}
+
+// Normalises `n` pixels, at most CHUNK, of the rows of a band. Sums move down from row to row.
+static void normalise(const struct edges *e, int top, int end, size_t first, size_t n)
+{
+    const double area = (2.0 * HALF + 1) * (2.0 * HALF + 1);
+    double sum[CHUNK] = {0.0}, squares[CHUNK] = {0.0};
+    for (int k = -HALF; k < HALF; k++) {
+        add_row(sum, &e->mean, top + k, first, n, 1.0);
+        add_row(squares, &e->squares, top + k, first, n, 1.0);
+    }
+    for (int y = top; y < end; y++) {
+        add_row(sum, &e->mean, y + HALF, first, n, 1.0);
+        add_row(squares, &e->squares, y + HALF, first, n, 1.0);
+        const size_t i = (size_t)y * (size_t)e->luma->width + first;
+        for (size_t x = 0; x < n; x++) {
+            const double mean = sum[x] / area;
+            const double variance = fmax(squares[x] / area - mean * mean, 0.0);
+            const double v = (double)e->magnitude.data[i + x] - mean;
+            e->out->data[i + x] = (float)(v / (sqrt(variance) + e->floor + 1e-12));
+        }
+        add_row(sum, &e->mean, y - HALF, first, n, -1.0);
+        add_row(squares, &e->squares, y - HALF, first, n, -1.0);
+    }
+}
+
+static void normalise_band(void *context, size_t band, int worker)
 {
     struct edges *e = context;
     (void)worker;
     const size_t width = (size_t)e->luma->width;
-    const double n = (2.0 * HALF + 1) * (2.0 * HALF + 1);
-    for (size_t x = 0; x < width; x++) {
-        double sum = 0.0, squares = 0.0;
-        for (int k = -HALF; k <= HALF; k++) {
-            const size_t i = (size_t)index_clamped((int)row + k, e->luma->height) * width + x;
-            sum += (double)e->mean.data[i];
-            squares += (double)e->squares.data[i];
-        }
-        const double mean = sum / n, variance = fmax(squares / n - mean * mean, 0.0);
-        const double v = (double)e->magnitude.data[row * width + x] - mean;
-        e->out->data[row * width + x] = (float)(v / (sqrt(variance) + e->floor + 1e-12));
-    }
+    const int top = (int)band * BAND;
+    const int end = e->luma->height - top < BAND ? e->luma->height : top + BAND;
+    for (size_t x = 0; x < width; x += CHUNK)
+        normalise(e, top, end, x, width - x < CHUNK ? width - x : CHUNK);
 }
 
 static double deviation(const struct relume_image *image)
@@ -134,7 +163,7 @@ relume_status structure_make(struct relume_image *out, const struct relume_image
         thread_for(threads, rows, magnitude_row, &e);
         e.floor = quiet * deviation(&e.magnitude);
         thread_for(threads, rows, sum_row, &e);
-        thread_for(threads, rows, normalise_row, &e);
+        thread_for(threads, (rows + BAND - 1) / BAND, normalise_band, &e);
     } else {
         relume_image_destroy(out);
     }

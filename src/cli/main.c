@@ -153,7 +153,7 @@ int tool_exit(relume_status status)
     if (status == RELUME_ENOMEM)
         fputs("relume: out of memory\n", people);
     if (status == RELUME_ECANCEL) {
-        fputs("relume: interrupted; nothing was written\n", people);
+        fputs("relume: interrupted; no unfinished output is left\n", people);
         return stopping_die();
     }
     return relume_status_exit(status);

@@ -48,7 +48,6 @@ same 'the page is the same' before.html out/report.html
 rm -r out/coin2
 expect_ok 'one is missing' '^relume: out: 3 objects, 2 of them there already' "$RELUME" capture coins/* -o out
 same 'the page is the same again' before.html out/report.html
-expect_ok 'force' '^relume: out: 3 objects; see' "$RELUME" capture coins/* -o out --force
 object coins/coin3 ball
 expect_ok 'another day' '^relume: out: 1 object; see' "$RELUME" capture coins/coin3 out/coin2 -o out
 check 'a capture is no object' said 'out/coin2: left out: it is a capture already'
@@ -65,6 +64,8 @@ relume capture coins/coin2 -o whole --normals whole.png --encode whole.exr --rel
 same 'normals as with the capture' whole.png out/coin2/n.png
 same 'pictures as with the capture' relit.png out/coin2/object.png
 first=$(stamp object.exr)
+mkdir cwd cwd/object.exr && (cd cwd && "$RELUME" capture ../coins/coin2 ../coins/coin3 -o ../apart --encode object.exr -q 2>../err.txt)
+check 'the working folder does not count' test -s apart/coin2/object.exr
 rm out/coin3/object.png
 expect_ok 'a picture is missing' - "$RELUME" capture coins/* -o out --encode object.exr --relight object.png
 check 'it is made' test -s out/coin3/object.png
@@ -148,7 +149,6 @@ refused 'folders and photographs' 2 '2 folders and 1 photograph .coins/coin2/lig
 refused 'a folder that is not there' 1 'coins/coin9: no such file' $two coins/coin9 -o no
 refused 'options that exclude each other' 2 'expected one of --near and --distant' $two --near --distant -o no
 refused 'a list that is not there' 1 'none.lp: cannot be opened' $two --lights none.lp -o no
-mkdir sub
 refused 'a file in a folder' 2 'sub/x.exr: of many objects each has this file in its own folder; .*as x.exr' $two --normals sub/x.exr -o no
 refused 'a name of the capture' 2 'light0001.exr: is a name of the capture itself' $two --albedo light0001.exr -o no
 refused 'a light that is none' 2 'ditto' $two --encode a.exr --relight a.png --light ditto -o no

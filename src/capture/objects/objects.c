@@ -425,7 +425,7 @@ relume_status relume_capture_objects(const char *dir, const char *const *folders
                                      const struct relume_capture_objects_params *params,
                                      struct relume_captured_objects *out)
 {
-    struct relume_captured_objects unread;
+    struct relume_captured_objects unread = {0};
     struct run r = {.p = PARAMS(relume_capture_objects_params, params), .out = out ? out : &unread};
     r.each = PARAMS_WORK(relume_acquire_params, r.p.each);
     r.each.log = r.p.log;

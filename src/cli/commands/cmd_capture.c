@@ -446,6 +446,13 @@ static relume_status capture_many(const struct capture_options *o)
     return status;
 }
 
+// Files of many objects lie in the folder of each.
+static bool has_many_objects(const struct args *args)
+{
+    bool many;
+    return !relume_capture_find_objects(&many, args->input, args->inputs, NULL) && many;
+}
+
 static relume_status run_capture(const struct args *args)
 {
     const struct capture_options *o = (const void *)args;
@@ -463,4 +470,5 @@ const struct command command_capture = {
             "  relume capture coins/* -o coin_captures",
             1, 4096),
     .defaults = &(const OPTIONS){.cpu_mask = ALL_KERNELS},
+    .moves_outputs = has_many_objects,
 };

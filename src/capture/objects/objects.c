@@ -209,12 +209,23 @@ static relume_status make_capture(const struct run *r, struct relume_captured_ob
     return status;
 }
 
-// Files that were added belong to what relume made.
-static relume_status list_files(const struct run *r, const struct relume_captured_object *o,
-                                const bool *before, const struct relume_log *log)
+// Fills had[files] by what is in an object's folder. Returns the folder's number, 0: not there.
+static ino_t look_before(const struct run *r, const struct relume_captured_object *o, bool *had)
 {
+    struct stat s;
     for (int i = 0; i < r->files; i++)
-        if (!before[i] && has_file(o, r->file[i]) && !inventory_add(o->path, r->file[i]))
+        had[i] = has_file(o, r->file[i]);
+    return stat(o->path, &s) ? 0 : s.st_ino;
+}
+
+// Enters files that were added to the folder: `old` with the files `had`, or a new one.
+static relume_status list_files(const struct run *r, const struct relume_captured_object *o,
+                                ino_t old, const bool *had, const struct relume_log *log)
+{
+    struct stat s;
+    const bool is_old = !stat(o->path, &s) && s.st_ino == old;
+    for (int i = 0; i < r->files; i++)
+        if (!(is_old && had[i]) && has_file(o, r->file[i]) && !inventory_add(o->path, r->file[i]))
             return log_fail(log, RELUME_EIO, "%s: its list .relume cannot be written; %s", o->path,
                             strerror(errno));
     return RELUME_OK;
@@ -238,20 +249,19 @@ static relume_status make_object(const struct run *r, struct relume_captured_obj
 {
     struct object_log own;
     const struct relume_log *log = object_log(&own, o, r->p.log);
-    bool *before = mem_zeroed((size_t)r->files, sizeof *before);
-    if (!before)
+    bool *had = mem_array((size_t)r->files, sizeof *had);
+    if (!had)
         return RELUME_ENOMEM;
     o->kept = !r->each.force && object_is_capture(o->path);
-    for (int i = 0; i < r->files; i++)
-        before[i] = o->kept && has_file(o, r->file[i]);
+    const ino_t old = look_before(r, o, had);
     o->status = make_capture(r, o, log);
     if (!o->status && r->p.follow)
         o->status = r->p.follow(r->p.user, o, log);
     if (o->capture.lights) {
-        const relume_status listed = list_files(r, o, before, log);
+        const relume_status listed = list_files(r, o, old, had, log);
         o->status = o->status ? o->status : listed;
     }
-    mem_free(before);
+    mem_free(had);
     return give_reason(r, o);
 }
 

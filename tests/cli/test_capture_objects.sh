@@ -145,7 +145,7 @@ refused() { # name, status, pattern, arguments
     expect_fail "$name" "$want" "$pattern" no "$RELUME" capture "$@" -q
 }
 two='coins/coin2 coins/coin3'
-refused 'folders and photographs' 2 '2 folders and 1 photograph .coins/coin2/light0000.jpg.; expected folders alone' $two coins/coin2/light0000.jpg -o no
+refused 'folders and photographs' 2 '2 folders and 1 photograph .coins/coin2/light0000.jpg.; expected folders alone .[*]. in a shell., each' $two coins/notes.txt coins/coin2/light0000.jpg -o no
 refused 'a folder that is not there' 1 'coins/coin9: no such file' $two coins/coin9 -o no
 refused 'options that exclude each other' 2 'expected one of --near and --distant' $two --near --distant -o no
 refused 'a list that is not there' 1 'none.lp: cannot be opened' $two --lights none.lp -o no
@@ -161,5 +161,5 @@ echo >file && expect_fail 'a file' 2 'file: is a file' - "$RELUME" capture $two 
 mkdir page && echo '<html>mine' >page/report.html
 expect_fail 'a page of others' 2 "page/report.html: is no page of relume's captures" - "$RELUME" capture $two -o page -q
 check 'stays' test "$(ls page)" = report.html
-refused 'folders below one that is named alone' 1 'folders below have some: .*; try: relume capture coins/[*] -o DIR for an object of each folder, or coins/coin2 alone' coins -o no
+refused 'folders below one that is named alone' 1 'folders below have some: .*; try: relume capture coins/[*]/ -o DIR for an object of each folder, or coins/coin2 alone' coins -o no
 finish

@@ -15,8 +15,8 @@
 
 // ---------------------------------------------------------------- many or one
 
-// Returns the number of photographs among files.
-static int count_photographs(const char *const *files, int n)
+// Returns the number of photographs among files, and the first one's path.
+static int count_photographs(char first[256], const char *const *files, int n)
 {
     struct relume_photographs list = {0};
     // relume_photographs_list takes any file that is named alone.
@@ -24,6 +24,7 @@ static int count_photographs(const char *const *files, int n)
     const relume_status status = relume_photographs_list(
         &list, n == 1 ? one : files, n == 1 ? 2 : n, relume_photographs_params(.quiet = true));
     const int count = status ? 0 : n == 1 ? list.count / 2 : list.count;
+    snprintf(first, 256, "%s", count ? list.path[0] : "");
     relume_photographs_free(&list);
     return count;
 }
@@ -35,6 +36,7 @@ relume_status relume_capture_find_objects(bool *many, const char *const *paths, 
     int files = 0, folders = 0;
     const char *folder = NULL;
     bool all_there = true;
+    char first[256];
     *many = false;
     if (!file)
         return RELUME_ENOMEM;
@@ -49,13 +51,14 @@ relume_status relume_capture_find_objects(bool *many, const char *const *paths, 
         }
     }
     relume_status status = RELUME_OK;
-    const int photographs = folders > 1 && all_there ? count_photographs(file, files) : 0;
+    const int photographs = folders > 1 && all_there ? count_photographs(first, file, files) : 0;
     *many = folders > 1 && all_there && !photographs;
     if (photographs)
-        status = log_fail(log, RELUME_EINVAL,
-                          "%d folders and %d photograph%s (%s); expected folders alone, each an "
-                          "object, or photographs of one object, as %s/*",
-                          folders, photographs, relume_plural(photographs), file[0], folder);
+        status =
+            log_fail(log, RELUME_EINVAL,
+                     "%d folders and %d photograph%s (%s); expected folders alone (*/ in a shell), "
+                     "each an object, or photographs of one object, as %s/*",
+                     folders, photographs, relume_plural(photographs), first, folder);
     mem_free(file);
     return status;
 }

@@ -11,6 +11,7 @@
 #include <relume/capture/ball.h>
 #include <relume/capture/chart.h>
 #include <relume/capture/ingest.h>
+#include <relume/capture/objects.h>
 #include <relume/capture/photometric.h>
 #include <relume/capture/slab_depth.h>
 #include <relume/core/vec.h>

@@ -48,6 +48,9 @@ struct command {
     // What its next word names, in place of all that; or, of a command that runs by itself, its
     // first word alone.
     const struct command *const *tasks;
+    // Returns true where pictures and relume files go into other folders than their paths say,
+    // which `run` checks. NULL: never.
+    bool (*moves_outputs)(const struct args *args);
     relume_status (*run)(const struct args *args);
 };
 // With the `options` that fill OPTIONS, and `run`, of its file.

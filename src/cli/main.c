@@ -153,16 +153,19 @@ int tool_exit(relume_status status)
     if (status == RELUME_ENOMEM)
         fputs("relume: out of memory\n", people);
     if (status == RELUME_ECANCEL) {
-        fputs("relume: interrupted; nothing was written\n", people);
+        fputs("relume: interrupted; no unfinished output is left\n", people);
         return stopping_die();
     }
     return relume_status_exit(status);
 }
 
-// A folder that is there may be one that a command fills or replaces.
-static bool is_output(const struct given *g)
+// A folder that is there may be one that a command fills or replaces. `elsewhere`: files are put
+// there.
+static bool is_output(const struct given *g, bool elsewhere)
 {
     struct stat s;
+    if (elsewhere && g->option->kind > OPTION_OUTPUT && g->option->kind < OPTION_RIG)
+        return false;
     return g->option->kind > OPTION_OUTPUT ||
            (g->option->kind == OPTION_OUTPUT && (stat(g->text, &s) || !S_ISDIR(s.st_mode)));
 }
@@ -205,8 +208,10 @@ static relume_status check_outputs_differ(const struct command_line *l)
 // these name in turn are noted as they are opened.
 static relume_status note_inputs(struct parsed *p)
 {
+    const struct command *c = p->command;
+    const bool elsewhere = c->moves_outputs && c->moves_outputs(p->args);
     relume_status status = RELUME_OK;
-    for (int i = 0; !p->command->names_built_in && i < p->line.input_count; i++)
+    for (int i = 0; !c->names_built_in && i < p->line.input_count; i++)
         relume_context_note(p->log.context, p->line.input[i]);
     for (int i = 0; i < p->line.given_count; i++) {
         const enum option_kind kind = p->line.given[i].option->kind;
@@ -214,7 +219,7 @@ static relume_status note_inputs(struct parsed *p)
             relume_context_note(p->log.context, p->line.given[i].text);
     }
     for (int i = 0; !status && i < p->line.given_count; i++)
-        if (is_output(&p->line.given[i]))
+        if (is_output(&p->line.given[i], elsewhere))
             status = relume_file_check(p->line.given[i].text, &p->log);
     return status ? status : check_outputs_differ(&p->line);
 }

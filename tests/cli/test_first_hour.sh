@@ -31,13 +31,13 @@ expect_fail 'nothing is left' 1 'texts: no photographs; found LICENSE, old.exr \
 mkdir -p set/statue set/coin set/empty && cp photos/light*.png set/statue && cp photos/light000[0-5].png set/coin
 cp photos/light0000.png set/mask.png
 expect_fail 'photographs in folders below' 1 \
-    'set: no photographs; folders below have some: coin \(6\), statue \(9\); try: relume capture set/statue -o DIR$' out \
+    'set: no photographs; folders below have some: coin \(6\), statue \(9\); try: relume capture set/\*/ -o DIR for an object of each folder, or set/statue alone$' out \
     "$RELUME" capture set -q -o out
 awk 'NF == 4 { print $2, $3, $4 }' photos/second.lp >set/light_directions.txt
 cp photos/light0001.png set/one.png
 mv set/statue "set/a statue"
 expect_fail 'and their lights beside them' 1 \
-    "set: 1 photograph; folders below have more: a statue \(9\), coin \(6\); try: relume capture 'set/a statue' --lights set/light_directions.txt -o DIR\$" out \
+    "set: 1 photograph; folders below have more: a statue \(9\), coin \(6\); try: relume capture set/\*/ --lights set/light_directions.txt -o DIR for an object of each folder, or 'set/a statue' alone\$" out \
     "$RELUME" capture set -q -o out
 expect_fail 'a list of lights above is named' 1 'no mirror ball found; give --lights set/light_directions.txt,' out \
     "$RELUME" capture 'set/a statue' -q -o out

@@ -516,7 +516,7 @@ static const char *find_conflict(const struct relume_acquire_params *p)
     return NULL;
 }
 
-static relume_status check_params(const struct relume_acquire_params *p)
+relume_status acquire_check_params(const struct relume_acquire_params *p)
 {
     const char *conflict = find_conflict(p);
     return conflict ? log_fail(p->log, RELUME_EINVAL, "capture: %s", conflict) : RELUME_OK;
@@ -595,7 +595,7 @@ static relume_status make_folder(struct acquisition *s, const char *dir)
 
 relume_status acquire_begin(struct acquisition *s, const char *const *photographs, int count)
 {
-    relume_status status = check_params(&s->p);
+    relume_status status = acquire_check_params(&s->p);
     if (s->p.focal_mm > 0.0)
         s->p.fov_deg = 2.0 * atan(SENSOR_MM / 2.0 / s->p.focal_mm) * 180.0 / M_PI;
     if (!status)

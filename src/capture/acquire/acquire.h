@@ -152,6 +152,9 @@ relume_status acquire_kept(struct relume_image *out, const struct acquisition *s
 // The mask of the pictures, cropped as they are; empty without one. An input status.
 relume_status acquire_load_mask(struct relume_image *out, const struct acquisition *s);
 
+// Returns RELUME_EINVAL, and says so, where members of the params need or exclude each other.
+relume_status acquire_check_params(const struct relume_acquire_params *p);
+
 // Finds the photographs, masks and lights that the params name, or that lie beside. An input
 // status.
 relume_status acquire_find_inputs(struct acquisition *s, const char *const *paths, int count);
@@ -159,6 +162,9 @@ relume_status acquire_find_inputs(struct acquisition *s, const char *const *path
 relume_status acquire_read_target(struct acquisition *s);
 // Writes normals, albedo and height, where they are wanted. RELUME_EUNFIT, RELUME_EIO.
 relume_status acquire_write_products(const struct acquisition *s);
+// The same for the capture in a folder, by the params alone. RELUME_EUNFIT, RELUME_EIO, an input
+// status.
+relume_status acquire_write_products_of(const char *folder, const struct relume_acquire_params *p);
 
 // One photograph of the camera that stands still, turned as the first is. `notes` may be NULL. An
 // input status.

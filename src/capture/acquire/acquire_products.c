@@ -101,3 +101,30 @@ relume_status acquire_write_products(const struct acquisition *s)
         status = save(s, s->p.albedo, &s->out->photometric.albedo, 0);
     return status ? status : save_height(s);
 }
+
+static relume_status write_products_of(struct acquisition *s, const relume_capture *capture)
+{
+    const struct relume_geometry *g = &relume_capture_manifest(capture)->geometry;
+    const double width = g->window_max[0] - g->window_min[0];  // the whole photographs: 2
+    s->whole[0] = relume_whole(2.0 * relume_capture_width(capture) / width + 0.5);
+    const relume_status status =
+        relume_photometric_fit(&s->out->photometric, capture, 0,
+                               relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
+    return status && status != RELUME_EUNFIT ? status : acquire_write_products(s);
+}
+
+relume_status acquire_write_products_of(const char *folder, const struct relume_acquire_params *p)
+{
+    struct relume_acquisition out = {0};
+    struct acquisition s = {.p = *p, .out = &out};
+    relume_capture *capture;
+    if (!p->normals && !p->albedo && !p->height)
+        return RELUME_OK;
+    relume_status status =
+        relume_capture_open(&capture, folder, relume_capture_params(.log = p->log));
+    if (!status)
+        status = write_products_of(&s, capture);
+    relume_capture_destroy(&capture);
+    relume_acquisition_destroy(&out);
+    return status;
+}

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 struct capture_options {
     struct args args;
@@ -28,7 +29,8 @@ enum { FRAMES = 60 };  // of a film
 
 static const struct option options[] = {
     GROUP("output"),
-    OUTPUT(OPTION_OUTPUT, output, "DIR", "the capture folder to make"),
+    OUTPUT(OPTION_OUTPUT, output, "DIR",
+           "the capture folder to make; for several folders, an object each, one of captures"),
     FLAG("--force", force, "replace a folder that relume made"),
     FLAG("--json", json, "print one JSON object"),
     GROUP("input"),
@@ -162,7 +164,9 @@ static struct relume_acquire_params read_options(const struct capture_options *o
 
 // ---------------------------------------------------------------- the file
 
-static relume_status relight(const struct capture_options *o, const char *file)
+// `args` has the log.
+static relume_status relight(const struct capture_options *o, const struct args *args,
+                             const char *file, const char *picture)
 {
     relume_pack *pack;
     relume_rig *rig = NULL;
@@ -170,19 +174,19 @@ static relume_status relight(const struct capture_options *o, const char *file)
     struct relume_image frame = {0};
     int n;
     struct relume_frame_params params = parse_frame(&o->args, &o->lighting, o->cpu_mask);
-    params.log = o->args.log;
+    params.log = args->log;
     params.masked = true;
     relume_status status = relume_pack_open(
-        &pack, file, relume_pack_params(.log = o->args.log, .threads = o->args.threads));
+        &pack, file, relume_pack_params(.log = args->log, .threads = args->threads));
     if (status)
         return status;
-    status = parse_lights(&o->args, &o->lighting, &rig, &lights, &n);
+    status = parse_lights(args, &o->lighting, &rig, &lights, &n);
     if (!status)
         status = relume_frame(&frame, pack, &(struct relume_camera){0}, lights, n, &params);
     if (!status)
-        status = relume_image_save(&frame, o->relight, relume_image_params(.log = o->args.log));
+        status = relume_image_save(&frame, picture, relume_image_params(.log = args->log));
     if (!status)
-        status = save_lights(&o->args, &o->lighting, rig);
+        status = save_lights(args, &o->lighting, rig);
     relume_image_destroy(&frame);
     relume_rig_destroy(&rig);
     relume_pack_destroy(&pack);
@@ -259,32 +263,37 @@ static void put_balls(struct jwriter *w, const struct relume_acquisition *s)
     jclose(w);
 }
 
-static void print_json(const struct relume_acquisition *s)
+static void put_report(struct jwriter *w, const struct relume_acquisition *s)
 {
     const bool measured = s->photometric.normal.data;
+    jput_integer(w, "lights", s->lights);
+    jput_integer(w, "left_out", s->left_out);
+    jput_integer(w, "width", s->width);
+    jput_integer(w, "height", s->height);
+    if (s->crop[2]) {
+        jopen_array(w, "crop");
+        for (int i = 0; i < 4; i++)
+            jput_integer(w, NULL, s->crop[i]);
+        jclose(w);
+    }
+    put_balls(w, s);
+    jput_number(w, "gap_deg", s->gap_deg, 6);
+    jput_number(w, "residual", measured ? s->photometric.residual : (double)NAN, 9);
+    jput_number(w, "position_error", s->position_error, 6);
+    jopen_array(w, "photographs");
+    for (int i = 0; i < s->lights; i++)
+        put_photograph(w, s, i);
+    jclose(w);
+    jput_texts(w, "warnings", (const char *const *)s->warning, (size_t)s->warnings);
+    if (s->target)
+        put_target(w, &s->chart, s->target);
+}
+
+static void print_json(const struct relume_acquisition *s)
+{
     struct jwriter w = json_dense();
     jopen_object(&w, NULL);
-    jput_integer(&w, "lights", s->lights);
-    jput_integer(&w, "left_out", s->left_out);
-    jput_integer(&w, "width", s->width);
-    jput_integer(&w, "height", s->height);
-    if (s->crop[2]) {
-        jopen_array(&w, "crop");
-        for (int i = 0; i < 4; i++)
-            jput_integer(&w, NULL, s->crop[i]);
-        jclose(&w);
-    }
-    put_balls(&w, s);
-    jput_number(&w, "gap_deg", s->gap_deg, 6);
-    jput_number(&w, "residual", measured ? s->photometric.residual : (double)NAN, 9);
-    jput_number(&w, "position_error", s->position_error, 6);
-    jopen_array(&w, "photographs");
-    for (int i = 0; i < s->lights; i++)
-        put_photograph(&w, s, i);
-    jclose(&w);
-    jput_texts(&w, "warnings", (const char *const *)s->warning, (size_t)s->warnings);
-    if (s->target)
-        put_target(&w, &s->chart, s->target);
+    put_report(&w, s);
     jend(&w);
 }
 
@@ -329,17 +338,15 @@ static relume_status make_capture(const struct capture_options *o,
     return status;
 }
 
-static relume_status run_capture(const struct args *args)
+static relume_status capture_one(const struct capture_options *o)
 {
-    const struct capture_options *o = (const void *)args;
+    const struct args *args = &o->args;
     struct relume_acquisition report = {0};
-    relume_status status = check_options(o);
-    if (!status)
-        status = make_capture(o, &report);
+    relume_status status = make_capture(o, &report);
     if (!status && o->encode)
         status = encode_as_usual(args, o->output, o->encode);
     if (!status && o->relight)
-        status = relight(o, o->encode);
+        status = relight(o, args, o->encode, o->relight);
     if (!status && o->json)
         print_json(&report);
     else if (!status)
@@ -348,9 +355,120 @@ static relume_status run_capture(const struct args *args)
     return status;
 }
 
+// ---------------------------------------------------------------- many objects
+
+// Fills in the path of a file in an object's folder; `*there`: the folder has one already.
+static relume_status fill_path(char *path, size_t size, bool *there,
+                               const struct relume_captured_object *object, const char *name)
+{
+    if (snprintf(path, size, "%s/%s", object->path, name) >= (int)size)
+        return data_error("%s/%s: this name is too long", object->path, name);
+    *there = !access(path, F_OK);
+    return RELUME_OK;
+}
+
+// The relume file of an object and its picture. Files that are there stay.
+static relume_status follow_object(void *user, const struct relume_captured_object *object,
+                                   const struct relume_log *log)
+{
+    const struct capture_options *o = user;
+    struct args args = o->args;
+    char file[4096], picture[4096];
+    bool encoded = true, relit = true;
+    if (!o->encode)
+        return RELUME_OK;
+    args.log = log;
+    relume_status status = fill_path(file, sizeof file, &encoded, object, o->encode);
+    if (!status && o->relight)
+        status = fill_path(picture, sizeof picture, &relit, object, o->relight);
+    if (!status && !encoded)
+        status = encode_as_usual(&args, object->path, file);
+    return status || relit ? status : relight(o, &args, file, picture);
+}
+
+static void put_object(struct jwriter *w, const struct relume_captured_object *object)
+{
+    jopen_object(w, NULL);
+    jput_text(w, "name", object->name);
+    jput_text(w, "folder", object->photographs);
+    jput_text(w, "capture", object->path);
+    jput_text(w, "status", relume_status_name(object->status));
+    jput_text(w, "reason", object->reason);
+    jput_truth(w, "kept", object->kept);
+    if (object->capture.lights)
+        put_report(w, &object->capture);
+    jclose(w);
+}
+
+static void print_objects(const struct relume_captured_objects *objects)
+{
+    struct jwriter w = json_dense();
+    jopen_object(&w, NULL);
+    jopen_array(&w, "objects");
+    for (int i = 0; i < objects->count; i++)
+        put_object(&w, &objects->object[i]);
+    jend(&w);
+}
+
+// Names faults of the lights once, before the first object.
+static relume_status check_lights(const struct capture_options *o)
+{
+    relume_rig *rig = NULL;
+    const struct relume_light *lights;
+    int n;
+    const relume_status status =
+        o->relight ? parse_lights(&o->args, &o->lighting, &rig, &lights, &n) : RELUME_OK;
+    relume_rig_destroy(&rig);
+    return status;
+}
+
+static relume_status capture_many(const struct capture_options *o)
+{
+    const struct args *args = &o->args;
+    const struct relume_acquire_params each = read_options(o);
+    const char *const files[] = {o->encode, o->relight};
+    struct relume_captured_objects objects = {0};
+    relume_status status = check_lights(o);
+    if (!status)
+        status = relume_capture_objects(
+            o->output, args->input, args->inputs,
+            relume_capture_objects_params(.log = args->log, .each = &each, .follow = follow_object,
+                                          .user = (void *)o, .files = files,
+                                          .file_count = (o->encode != NULL) + (o->relight != NULL)),
+            &objects);
+    if (o->json && objects.count && status != RELUME_ECANCEL)
+        print_objects(&objects);
+    else if (!status && !o->encode)
+        announce(args, RELUME_NOTE,
+                 "next: the same command with --encode NAME.exr puts a relume file into each "
+                 "folder");
+    relume_captured_objects_destroy(&objects);
+    return status;
+}
+
+// Files of many objects lie in the folder of each.
+static bool has_many_objects(const struct args *args)
+{
+    bool many;
+    return !relume_capture_find_objects(&many, args->input, args->inputs, NULL) && many;
+}
+
+static relume_status run_capture(const struct args *args)
+{
+    const struct capture_options *o = (const void *)args;
+    bool many = false;
+    relume_status status = check_options(o);
+    if (!status)
+        status = relume_capture_find_objects(&many, args->input, args->inputs, args->log);
+    return status ? status : many ? capture_many(o) : capture_one(o);
+}
+
 const struct command command_capture = {
-    COMMAND(run_capture, "capture", "PHOTO... -o DIR [OPTION ...]",
+    COMMAND(run_capture, "capture", "PHOTO... | FOLDER FOLDER... -o DIR [OPTION ...]",
             "turn photographs under one light each into a capture, and find their lights",
-            "relume capture statue/*.jpg --ball-photos ball -o statue_capture", 1, 4096),
+            "relume capture statue/*.jpg --ball-photos ball -o statue_capture\n"
+            "  relume capture coins/* -o coin_captures",
+            1, 4096),
     .defaults = &(const OPTIONS){.cpu_mask = ALL_KERNELS},
+    .moves_outputs = has_many_objects,
 };

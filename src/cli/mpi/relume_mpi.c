@@ -194,7 +194,7 @@ static int exit_of_all(struct processes *p, relume_status status)
     if (status == RELUME_ENOMEM)
         speak("relume: out of memory\n");
     if (status == RELUME_ECANCEL && !stopped)
-        speak("relume: interrupted; nothing was written\n");
+        speak("relume: interrupted; no unfinished output is left\n");
     const int64_t own = stopped ? 0 : relume_status_exit(status);
     int code = 0;
     signal(SIGTERM, SIG_IGN);  // the launcher sends it when the first of several ends with an error

@@ -48,9 +48,9 @@ static bool write_lines(FILE *to, const struct tree_list *list)
     return !fflush(to) && !ferror(to) && !fsync(fileno(to));
 }
 
-static bool write_list(const char *folder, const struct tree_list *list)
+// A new file; `path` is freed.
+static bool write_list(char *path, const struct tree_list *list)
 {
-    char *path = path_of(folder);
     FILE *to = path ? fopen(path, "wxe") : NULL;
     bool good = to && write_lines(to, list);
     const int error = errno;
@@ -86,7 +86,7 @@ bool inventory_write(const char *folder)
 {
     struct tree_list list;
     const bool good =
-        tree_list(&list, folder) && write_list(folder, &list) && sync_all(folder, &list);
+        tree_list(&list, folder) && write_list(path_of(folder), &list) && sync_all(folder, &list);
     const int error = errno;
     tree_list_free(&list);
     errno = error;
@@ -199,6 +199,62 @@ relume_status inventory_check(const char *folder, const char *output, const stru
     tree_list_free(&made);
     tree_list_free(&found);
     return status;
+}
+
+// ---------------------------------------------------------------- adding
+
+static int by_names(const void *a, const void *b)
+{
+    return strcmp(((const struct tree_entry *)a)->name, ((const struct tree_entry *)b)->name);
+}
+
+// Enters a file as it is now.
+static bool enter(struct tree_list *list, const char *folder, const char *name)
+{
+    char *path = mem_format("%s/%s", folder, name);
+    struct stat s;
+    const bool there = path && !lstat(path, &s);
+    mem_free(path);
+    for (size_t i = 0; there && i < list->count; i++)
+        if (!strcmp(list->item[i].name, name)) {
+            list->item[i].size = s.st_size;
+            return true;
+        }
+    if (!there)
+        return false;
+    struct tree_entry *more = mem_resize(list->item, list->count + 1, sizeof *more);
+    if (!more)
+        return false;
+    list->item = more;
+    more[list->count] = (struct tree_entry){.name = mem_text(name), .size = s.st_size};
+    if (!more[list->count].name)
+        return false;
+    qsort(more, ++list->count, sizeof *more, by_names);
+    return true;
+}
+
+static bool replace_list(const char *folder, const struct tree_list *list)
+{
+    char *path = path_of(folder), *new = mem_format("%s/%s-new", folder, FILE_NAME);
+    if (new)
+        unlink(new);  // of a run that was stopped
+    const bool good = path && new &&write_list(mem_text(new), list) && !rename(new, path);
+    const int error = errno;
+    mem_free(path);
+    mem_free(new);
+    errno = error;
+    return good;
+}
+
+bool inventory_add(const char *folder, const char *name)
+{
+    struct tree_list list;
+    const bool good =
+        read_inventory(&list, folder) && enter(&list, folder, name) && replace_list(folder, &list);
+    const int error = errno;
+    tree_list_free(&list);
+    errno = error;
+    return good;
 }
 
 // ---------------------------------------------------------------- removing

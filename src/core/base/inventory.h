@@ -14,6 +14,8 @@ bool inventory_is(const char *name);
 
 // Write the list and flush the whole folder to disk. False with errno.
 bool inventory_write(const char *folder);
+// Enter a file that was added to a folder with a list. False with errno, 0: there is no list.
+bool inventory_add(const char *folder, const char *name);
 
 // RELUME_EINVAL with a sentence unless all that is in `folder` is listed there as it is; `output`
 // is what the sentence calls the folder. RELUME_EIO, RELUME_ENOMEM.

@@ -12,6 +12,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -291,16 +292,25 @@ static relume_status refuse_for_below(const struct gathering *g, const char *fol
                                       const struct below *b)
 {
     const struct relume_photographs_params *p = g->p;
-    const char *q = relume_name_quotes(b->folder),
+    const bool each = p->command && b->folders > 1;
+    const char *q = relume_name_quotes(each ? folder : b->folder),
+               *one = relume_name_quotes(b->folder),
                *lights = p->command && g->list->lights ? g->list->lights : "";
-    char here[32] = "no photographs", more[32];
+    char here[32] = "no photographs", more[32], instead[1100] = "";
+    size_t length = strlen(folder);
     if (count)
         snprintf(here, sizeof here, "%d photograph%s", count, relume_plural(count));
     name_more(more, b);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    if (each)
+        snprintf(instead, sizeof instead, " for an object of each folder, or %s%.1024s%s alone",
+                 one, b->folder, one);
     return log_fail(p->log, RELUME_ENOTFOUND,
-                    "%s: %s; folders below have %s: %s%s; %s %s%s%s%s%s%s", folder, here,
+                    "%s: %s; folders below have %s: %s%s; %s %s%.*s%s%s%s%s%s%s", folder, here,
                     count ? "more" : "some", b->names, more, p->command ? p->command : "give", q,
-                    b->folder, q, *lights ? " --lights " : "", lights, p->command ? " -o DIR" : "");
+                    each ? (int)length : INT_MAX, each ? folder : b->folder, q, each ? "/*/" : "",
+                    *lights ? " --lights " : "", lights, p->command ? " -o DIR" : "", instead);
 }
 
 // Some that only have names of masks and normals are none here either.

@@ -101,11 +101,14 @@ export class Controls {
         const { panorama } = viewer.published, around = panorama && Math.hypot(...panorama.center) > 0;  // lamps are moved around the origin
         const distance = viewer.published.takesLamps && !around ? [labelled('Distance', this.distance)] : [];
         const planet = viewer.isPanorama ? [this.planet()] : [];
+        const word = (text, title, act) => make('button', { type: 'button', class: 'word rest', title, onclick: act }, text);
+        const raking = viewer.isPanorama ? [] : [word('Raking', 'Raking light (1)', () => actions.rake(1)),
+                                                 word('Two sides', 'Raking light from two sides (2)', () => actions.rake(2))];
         this.node = make('div', { class: 'strip', role: 'toolbar', 'aria-label': 'Light and picture' },
             this.ball.node,
             make('div', { class: 'group' },
                 make('div', { class: 'row' }, this.mode, this.counter, button('add', 'Another light (N)', () => actions.addLight()),
-                     this.remove, this.colour),
+                     this.remove, this.colour, ...raking),
                 make('div', { class: 'row rest' }, labelled('Strength', this.strength), labelled('Soft', this.softness), ...distance)),
             make('div', { class: 'group rest' },
                 make('div', { class: 'row' }, labelled('Show', this.pass), labelled('Highlights', this.tone)),

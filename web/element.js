@@ -17,7 +17,7 @@ const STEP = 0.06;  // of the disc of lights, a key
 const MOST_LAMPS_OF_PAGE = 16;
 const KEYS = [
     ['Arrow keys', 'move the light (Shift: the other way of dragging)'], ['L', 'dragging and arrows: light, or moving'],
-    ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['N  Delete', 'another light, remove it'],
+    ['+ −', 'enlarge, reduce'], ['0', 'the whole picture'], ['1 2', 'raking light, raking light from two sides'], ['N  Delete', 'another light, remove it'],
     ['Tab in the strip', 'colour, softness and more'], ['[ ]', 'darker, brighter'], ['P', 'what is shown'],
     ['T', 'how highlights are shown'], ['F', 'full screen'], ['M', 'notes and measures'], [', .', 'the note before, the next one'], ['K  V', 'keep this look; ways to compare with it'], ['C', 'copy a link to this view'], ['S', 'save this picture'],
 ];
@@ -205,6 +205,12 @@ export class RelumeView extends Stage {
         return viewer.setLights([...viewer.lights, { kind: 'dir', direction, rgb: [1, 1, 1] }]);
     }
 
+    rake(count) {
+        this.dismissHint();
+        this.viewer.rake(count);
+        this.sayLight();
+    }
+
     keep() {
         this.viewer.comparison.keep();
         this.say('This look is kept; change the light or what is shown, and compare.');
@@ -309,7 +315,7 @@ export class RelumeView extends Stage {
         }
         const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
         const { viewer } = this, acts = {
-            ...this.usualActs, v: () => this.compare(following(COMPARISONS, viewer.comparison.way)),
+            ...this.usualActs, 1: () => this.rake(1), 2: () => this.rake(2), v: () => this.compare(following(COMPARISONS, viewer.comparison.way)),
             p: () => this.set('pass', following(PASSES, viewer.pass)), t: () => this.set('tone', following(TONES_BY_NAME, viewer.tone)),
         };
         if (way && this.lighting !== event.shiftKey)

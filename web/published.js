@@ -32,12 +32,14 @@ function transferOf(text) {
     return gamma ? [3, +gamma[1]] : [text === 'srgb' ? 2 : 1, 1];
 }
 
-function checkBasis(basis) {
+function checkBasis(published) {
+    const { basis, relief } = published;
     insist(basis && typeof basis.name === 'string', 'no basis');
     insist(areNumbers(basis.parameter || [], undefined), 'parameters of the basis');
     insist(areNumbers(basis.lights) && basis.lights.length % 3 === 0 &&
            isWhole(basis.lights.length / 3, 1, 4096), 'lights of the basis');
     insist(isWhole(basis.coefficients, 1, 4096), 'coefficients of the basis');
+    insist(relief === undefined || (Array.isArray(relief) && relief.every((i) => isWhole(i, 0, basis.lights.length / 3 - 1))), 'lights that show relief');
     basis.parameter = basis.parameter || [];
 }
 
@@ -100,7 +102,7 @@ export function checkPublished(published, address) {
     insist([undefined, 'avif', 'both'].includes(published.pictures), 'unknown pictures');
     insist(published.exposure === undefined || Number.isFinite(published.exposure), 'exposure');
     insist(published.knee === undefined || published.knee > 0, 'the guide of its planes');
-    checkBasis(published.basis);
+    checkBasis(published);
     checkLevels(published);
     checkViews(published);
     checkGeometry(published);

@@ -11,6 +11,7 @@ import { Slab } from './slab.js';
 import { Panorama } from './panorama.js';
 import { Comparison } from './compare.js';
 import { firstLight } from './lights.js';
+import { rakingDirections } from './raking.js';
 import { More, loadMore } from './more.js';
 import { readState, writeState } from './state.js';
 import { brightestExposure, measureRange, meterExposure } from './measure.js';
@@ -97,6 +98,16 @@ export class Viewer {
         this.chosen = clamp(this.chosen, 0, Math.max(0, lights.length - 1));
         this.relighter.setLights(lights);
         this.changed();
+    }
+
+    // Raking light from the side of the chosen light, `count` times; again, from the side that it had before.
+    rake(count) {
+        const light = this.lights[this.chosen], at = (light && light.direction) || [0, 0, 1], { raked } = this;
+        const again = raked && raked.to.every((v, i) => Math.abs(v - at[i]) < 1e-6);
+        const side = again ? raked.from : at, made = rakingDirections(this.published, side, count);
+        this.raked = { from: side, to: made[0] };
+        this.chosen = 0;
+        this.setLights(made.map((direction) => ({ kind: 'dir', direction, rgb: [1, 1, 1] })));
     }
 
     changed() {

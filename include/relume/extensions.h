@@ -37,6 +37,7 @@
 #include <relume/relight/glare.h>
 #include <relume/relight/normals.h>
 #include <relume/relight/psf.h>
+#include <relume/relight/relief.h>
 #include <relume/relight/relight.h>
 #include <relume/relight/slab_set.h>
 #include <relume/relight/tone.h>

@@ -13,8 +13,7 @@ struct light_options {
 // clang-format off
 #define LIGHT_OPTIONS                                                                              \
     TEXTS("--light", lighting.light, "SPEC",                                                       \
-          "\"dir x y z\", point, spot, slide, area, env, ies, gonio (docs/lights.md); repeats; "   \
-          "default: \"dir 0 0 1\""),                                                               \
+          "\"dir x y z\", \"raking SIDE\" or another light (docs/lights.md); default: \"dir 0 0 1\""), \
     TEXT("--rig", lighting.rig, "FILE", "lights of a rig (JSON), before those of --light"),        \
     TEXT_AS(OPTION_RIG, "--save-rig", lighting.save_rig, "FILE", "write all lights as a rig"),  \
     NUMBER("--assume-depth", lighting.assume_depth, "D",                                           \
@@ -33,6 +32,17 @@ struct light_options {
 // which the caller destroys.
 relume_status parse_lights(const struct args *args, const struct light_options *options,
                            relume_rig **rig, const struct relume_light **lights, int *count);
+// The same for commands that call aim_lights once they have opened a file: --light may be "raking",
+// which a direction stands in for.
+relume_status parse_lights_of_file(const struct args *args, const struct light_options *options,
+                                   relume_rig **rig, const struct relume_light **lights,
+                                   int *count);
+// Lets raking light come from captured lights of the file that show relief (relume_relief_lowest),
+// and tells which. Updates `lights` and `count`. RELUME_EUNFIT for panoramas and
+// several slabs, errors of relume_relief_find.
+relume_status aim_lights(const struct args *args, const struct light_options *options,
+                         relume_rig *rig, relume_pack *pack, const char *file,
+                         const struct relume_light **lights, int *count);
 // What --save-rig asks for, once all else is done: who fails leaves no rig.
 relume_status save_lights(const struct args *args, const struct light_options *options,
                           const relume_rig *rig);

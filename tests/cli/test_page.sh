@@ -198,7 +198,7 @@ check 'page and viewer find the same places of a panorama, and the tool keeps bo
 says 'two looks are compared' '^"difference"'
 says 'without WebGL2 there is a still picture and a sentence' '^\["Only a still picture can be shown: this browser has no WebGL2\.",true,"'
 [ ! -e "$axe" ] || says 'axe-core finds nothing serious' '^"axe "$'
-says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,19,0,360,"true"\]'
+says 'on a phone all controls are at hand and large enough' '^\["narrow",11,0,360,null,21,0,360,"true"\]'
 says 'a browser takes AVIF' '^\["AVIF",true\]'
 says 'where it cannot, JPEG' '^\["JPEG",true\]'
 says 'where there is none, a sentence' '^"Only a still picture can be shown: this browser does not decode its AVIF pictures'

@@ -1087,6 +1087,36 @@ static void arrangements_stand_on_the_pole(void **state)
         assert_float_equal(app.now.light[i].direction.y, sqrt(0.5), 1e-12);
 }
 
+// From the side of the light, which stays the side when the key is pressed again.
+static void raking_light_is_a_captured_one(void **state)
+{
+    (void)state;
+    struct relume_vec3 captured[] = {
+        {-0.8, 0, 0.6}, {-0.6, 0.65, 0.3}, {0.1, 0.9, 0.4}, {0.8, 0.1, 0.5}, {0, -0.9, 0.35}};
+    int number[] = {2, 5, 6, 8, 9};
+    const struct relume_relief relief = {5, number, captured};
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
+    app.file.relief = &relief;
+    const struct relume_light *const light = app.now.light;
+    key(&app, '1');  // light from the front: the upper left
+    assert_int_equal(app.now.lights, 1);
+    assert_memory_equal(&light[0].direction, &captured[1], sizeof *captured);
+    key(&app, '1');
+    assert_memory_equal(&light[0].direction, &captured[1], sizeof *captured);
+    key(&app, '2');  // and a quarter turn to its right
+    assert_int_equal(app.now.lights, 2);
+    assert_memory_equal(&app.now.light[0].direction, &captured[1], sizeof *captured);
+    assert_memory_equal(&app.now.light[1].direction, &captured[2], sizeof *captured);
+    app.now.selected = 1;
+    app_aim_light(&app, 1, (struct relume_vec3){0.5, -0.8, 0.33});
+    key(&app, '1');
+    assert_memory_equal(&app.now.light[0].direction, &captured[4], sizeof *captured);
+    const struct relume_relief none = {0};
+    app.file.relief = &none;
+    key(&app, '1');
+    assert_float_equal(app.now.light[0].direction.z, sin(12 * M_PI / 180), 1e-12);
+}
+
 static void pointers_are_in_pixels(void **state)
 {
     (void)state;
@@ -1362,6 +1392,7 @@ int main(void)
         cmocka_unit_test(scripts_hold_keys_and_wait),
         cmocka_unit_test(keys_change_the_selected_light),
         cmocka_unit_test(arrangements_stand_on_the_pole),
+        cmocka_unit_test(raking_light_is_a_captured_one),
         cmocka_unit_test(pointers_are_in_pixels),
         cmocka_unit_test(every_key_is_bound_once),
         cmocka_unit_test(recordings_go_once_around),

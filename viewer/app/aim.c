@@ -1,7 +1,6 @@
 // aim.c - where lights come from, as the viewer sees it
 #include "app/aim.h"
 
-#include "app/light_list.h"
 #include "app/orbit.h"
 #include "common/vec.h"
 
@@ -56,4 +55,23 @@ void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
     const double x = seen.x * cos(yaw) + ahead * sin(yaw);
     const double z = ahead * cos(yaw) - seen.x * sin(yaw);
     app_aim_light(app, app->now.selected, (struct relume_vec3){x, y, z});
+}
+
+// The side from which raking light shall come: what it made of a side would be another one.
+static struct relume_vec3 raking_side(const struct app *app)
+{
+    const struct app_state *s = &app->now;
+    const struct relume_light *light = &s->light[s->selected];
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        return (struct relume_vec3){0, 0, 1};
+    const struct relume_vec3 d = light_list_direction(light, app_middle(app));
+    return vec3_dot(d, s->raked_to) > 1 - 1e-9 ? s->raked_from : d;
+}
+
+void app_arrange_lights(struct app *app, const struct light_preset *preset)
+{
+    const struct relume_vec3 side = raking_side(app);
+    light_list_arrange(&app->now, preset, app_pole_y(app));
+    if (preset->rakes && app->file.relief)
+        light_list_rake(&app->now, preset, app->file.relief, side);
 }

@@ -2,6 +2,7 @@
 #ifndef VIEWER_AIM_H
 #define VIEWER_AIM_H
 
+#include "app/light_list.h"
 #include "app/view_geometry.h"
 
 struct app_axes app_frame_axes(const struct app *app);
@@ -14,5 +15,9 @@ void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
 void app_point_light(struct app *app, int light, double x, double y);
 // Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
+
+// Lets an arrangement replace the lights. A raking one comes from the side of the selected light;
+// pressed again, from the side that it had before.
+void app_arrange_lights(struct app *app, const struct light_preset *preset);
 
 #endif

@@ -368,7 +368,7 @@ static bool press_turn(struct app *app, int key)
 
 static bool press_preset(struct app *app, int key)
 {
-    light_list_arrange(&app->now, &light_presets[key - '1'], app_pole_y(app));
+    app_arrange_lights(app, &light_presets[key - '1']);
     return true;
 }
 

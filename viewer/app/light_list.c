@@ -237,18 +237,25 @@ unsigned light_list_fields(enum relume_light_kind kind)
 // ---------------------------------------------------------------- arrangements
 
 const struct light_preset light_presets[] = {
-    {"raking", "one light from the left, 12 degrees above the picture", 1, {180}, {12}},
+    {"raking",
+     "one light from the selected light's side, as low as the captured ones that show relief",
+     1,
+     {180},
+     {12},
+     true},
     {"double raking",
-     "two lights from the left and from above, 12 degrees",
+     "two such lights, the second a quarter turn to the right",
      2,
      {180, 90},
-     {12, 12}},
+     {12, 12},
+     true},
     {"dome",
      "eight lights all around, 45 degrees",
      8,
      {0, 45, 90, 135, 180, 225, 270, 315},
-     {45, 45, 45, 45, 45, 45, 45, 45}},
-    {NULL, NULL, 0, {0}, {0}},
+     {45, 45, 45, 45, 45, 45, 45, 45},
+     false},
+    {NULL, NULL, 0, {0}, {0}, false},
 };
 
 void light_list_arrange(struct app_state *state, const struct light_preset *preset, bool pole_y)
@@ -268,4 +275,28 @@ void light_list_arrange(struct app_state *state, const struct light_preset *pres
         light_list_add(state, &light, -1);
     }
     state->selected = 0;
+}
+
+static struct relume_vec3 turned_side(struct relume_vec3 side, double degrees)
+{
+    const double a = degrees * M_PI / 180;
+    return (struct relume_vec3){side.x * cos(a) - side.y * sin(a),
+                                side.x * sin(a) + side.y * cos(a), side.z};
+}
+
+void light_list_rake(struct app_state *state, const struct light_preset *preset,
+                     const struct relume_relief *relief, struct relume_vec3 side)
+{
+    struct relume_vec3 *const first = &state->light[0].direction;
+    int place = relume_relief_lowest(relief, side, -1);
+    if (place < 0)
+        return;
+    state->raked_from = side;
+    state->raked_to = *first = relief->direction[place];
+    for (int i = 1; i < preset->lights && place >= 0; i++) {
+        const double turn = preset->azimuth[i] - preset->azimuth[0];
+        place = relume_relief_lowest(relief, turned_side(*first, turn), place);
+        if (place >= 0)
+            state->light[i].direction = relief->direction[place];
+    }
 }

@@ -11,6 +11,7 @@
 #include <relume/frame.h>
 #include <relume/relight/enhance.h>
 #include <relume/relight/relight.h>
+#include <relume/relight/relief.h>
 #include <relume/relight/slab_set.h>
 #include <relume/world/object.h>
 
@@ -69,6 +70,7 @@ struct app_file {
     const relume_slab_set *around;  // several slabs, about whose middle the eye goes; NULL: none
     relume_objects *objects;        // in the scene, or all that there is; NULL: none
     const struct relume_captured_region *zone;  // where its light was captured; NULL: not known
+    const struct relume_relief *relief;         // captured lights that show relief; NULL: not known
     bool between;                               // light may go between objects and a scene
     bool scene;                                 // a scene file: the library draws it
     bool empty;                                 // no file is open yet
@@ -111,8 +113,9 @@ struct app_state {
     struct relume_light *light;           // [lights] of [capacity]
     struct app_light_state *light_state;  // by light
     int lights, capacity;
-    int selected;  // light that drags and keys change
-    bool ball;     // show the light's direction on a ball in the corner
+    struct relume_vec3 raked_from, raked_to;  // side of the last raking light, and what it became
+    int selected;                             // light that drags and keys change
+    bool ball;                                // show the light's direction on a ball in the corner
     enum relume_pass pass;
     struct relume_pass_params
         enhance;               // of it: gain, specular, exponent, radius, low, top; 0: usual

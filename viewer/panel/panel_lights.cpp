@@ -218,7 +218,7 @@ static bool light_buttons(panel *panel, app *app)
         if (p != light_presets)
             ImGui::SameLine();
         if (panel_button(p->name, p->what)) {
-            light_list_arrange(&app->now, p, app_pole_y(app));
+            app_arrange_lights(app, p);
             changed = true;
         }
     }

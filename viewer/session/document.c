@@ -4,6 +4,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // In the order in which they are asked: the last one takes every path, and says what is wrong.
@@ -23,6 +24,9 @@ const struct document_kind *document_kind_of(const char *path, const struct obje
 void document_close(struct document *d)
 {
     pack_source_destroy(&d->source);
+    if (d->relief)
+        relume_relief_destroy(d->relief);
+    free(d->relief);
     relume_pack_destroy(&d->pack);
     relume_slab_set_destroy(&d->slabs);
     if (d->kind && d->kind->close)

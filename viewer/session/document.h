@@ -18,13 +18,14 @@ struct session;
 // The open document. Pack and slabs are for every kind; `own` is known to the kind alone.
 struct document {
     const struct document_kind *kind;
-    char name[DOCUMENT_TEXT];    // for the title
-    char path[APP_SPEC];         // as it was opened ...
-    bool as_panorama;            // ... with the options of a panorama
-    char folder[APP_SPEC];       // of the last file that had a folder
-    relume_pack *pack;           // of a relume file, or NULL
-    struct pack_source *source;  // of the pack, for the renderer and its threads
-    relume_slab_set *slabs;      // around which the eye goes, NULL for one view or one slab
+    char name[DOCUMENT_TEXT];      // for the title
+    char path[APP_SPEC];           // as it was opened ...
+    bool as_panorama;              // ... with the options of a panorama
+    char folder[APP_SPEC];         // of the last file that had a folder
+    relume_pack *pack;             // of a relume file, or NULL
+    struct relume_relief *relief;  // captured lights of the pack that show relief, or NULL
+    struct pack_source *source;    // of the pack, for the renderer and its threads
+    relume_slab_set *slabs;        // around which the eye goes, NULL for one view or one slab
     void *own;
     bool beside_warned;                        // that the eye stands beside all camera grids
     char line[DOCUMENT_LINES][DOCUMENT_TEXT];  // description for the panel

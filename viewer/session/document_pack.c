@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 // Every path: relume_open says what is wrong with it.
 static bool is_pack(const char *path, const struct object_set *objects)
@@ -100,6 +101,21 @@ static relume_status check_depth(const relume_pack *pack, const struct app_state
                "interpolation by depth needs a file with depth; use --interpolate linear");
 }
 
+// Ignores damage, which drawing reports.
+static relume_status find_relief(struct document *d, const struct session_settings *settings)
+{
+    const struct relume_pack_info *info = relume_pack_info(d->pack);
+    struct relume_relief *relief = calloc(1, sizeof *relief);
+    if (!relief)
+        return RELUME_ENOMEM;
+    d->relief = relief;
+    const relume_status status =
+        relume_relief_find(relief, d->pack, relume_relief_params(.threads = settings->threads));
+    if (info->views > 1 || info->levels)
+        relume_pack_drop(d->pack, info->views / 2);
+    return status == RELUME_ENOMEM ? status : RELUME_OK;
+}
+
 static relume_status start_app(struct opening *out, struct session *s,
                                const struct app_state *start, bool look_ahead)
 {
@@ -107,6 +123,9 @@ static relume_status start_app(struct opening *out, struct session *s,
     struct app_file file = file_of(d->pack);
     relume_status status =
         find_slabs(&d->slabs, d->pack, relume_look_at_given(&start->camera.look_at), s->log);
+    if (!status)
+        status = find_relief(d, &s->settings);
+    file.relief = d->relief;
     file.around = d->slabs;
     file.objects = out->objects.objects;
     file.between = file.objects != NULL;

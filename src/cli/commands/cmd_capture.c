@@ -180,7 +180,9 @@ static relume_status relight(const struct capture_options *o, const struct args 
         &pack, file, relume_pack_params(.log = args->log, .threads = args->threads));
     if (status)
         return status;
-    status = parse_lights(args, &o->lighting, &rig, &lights, &n);
+    status = parse_lights_of_file(args, &o->lighting, &rig, &lights, &n);
+    if (!status)
+        status = aim_lights(args, &o->lighting, rig, pack, file, &lights, &n);
     if (!status)
         status = relume_frame(&frame, pack, &(struct relume_camera){0}, lights, n, &params);
     if (!status)

@@ -82,7 +82,7 @@ static void count_none(const struct query_options *o, const float (*rgb)[3], int
 }
 
 static relume_status query(const struct query_options *o, const struct relume_ray *rays, int n,
-                           const struct relume_light *lights, int count)
+                           relume_rig *rig, const struct relume_light *lights, int count)
 {
     relume_pack *pack;
     struct prefix_log about;
@@ -96,6 +96,8 @@ static relume_status query(const struct query_options *o, const struct relume_ra
                            .allow_outside = o->allow_outside, .keep_going = o->keep_going));
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
     params.interpolation = o->nearest ? RELUME_INTERPOLATE_CONSTANT : o->interpolation;
+    if (!status)
+        status = aim_lights(&o->args, &o->lighting, rig, pack, o->args.input[0], &lights, &count);
     if (!status)
         status = relume_query_rays(rgb, pack, rays, n, lights, count, &params);
     if (!status)
@@ -121,9 +123,9 @@ static relume_status run_query(const struct args *args)
         return usage_error("expected one of --interpolate and --nearest");
     relume_status status = o->rays ? rays_read(&rays, &n, o->rays, args->log) : RELUME_OK;
     if (!status)
-        status = parse_lights(args, &o->lighting, &rig, &lights, &count);
+        status = parse_lights_of_file(args, &o->lighting, &rig, &lights, &count);
     if (!status)
-        status = query(o, rays ? rays : &o->ray, n, lights, count);
+        status = query(o, rays ? rays : &o->ray, n, rig, lights, count);
     if (!status)
         status = save_lights(args, &o->lighting, rig);
     relume_rig_destroy(&rig);

@@ -436,17 +436,15 @@ static double elevation(struct relume_vec3 d)
 }
 
 // Says how far below the lowest captured light that of a raking picture stands; "": it does not.
-static void describe_low_light(char text[160], const struct relight_options *o,
-                               const struct relume_pack_info *info)
+static void describe_low_light(char text[160], const relume_renderer *renderer)
 {
+    const struct relume_pack_info *info = relume_pack_info(relume_renderer_pack(renderer));
     const struct relume_coder_info *coder = relume_coder_info(info->coder);
-    const struct relume_light *light;
-    relume_rig *rig = NULL;
     double low = 90.0, lowest = 90.0;
-    int n = 0;
+    int n;
+    const struct relume_light *light = relume_renderer_lights(&n, renderer);
     *text = '\0';
-    if (info->geometry.projection != RELUME_PLANAR ||
-        parse_lights(&o->args, &o->lighting, &rig, &light, &n))
+    if (info->geometry.projection != RELUME_PLANAR)
         return;
     for (int i = 0; i < n; i++)
         if (light[i].kind == RELUME_LIGHT_DIRECTIONAL)
@@ -456,14 +454,13 @@ static void describe_low_light(char text[160], const struct relight_options *o,
     if (low < lowest)
         snprintf(text, 160,
                  "; the light stands %.0f degrees above the picture, the lowest photographed one "
-                 "%.0f",
+                 "%.0f; --light raking takes one that shows relief",
                  low, lowest);
-    relume_rig_destroy(&rig);
 }
 
 // Raking light leaves some surfaces nearly black.
 static void note_darkness(const struct relume_image *frame, const struct relight_options *o,
-                          const struct relume_pack_info *info, const char *path)
+                          const relume_renderer *renderer, const char *path)
 {
     static const double bright = 0.9, dark = 0.1;  // relume_tone_meter_bright, white
     char low[160];
@@ -472,7 +469,7 @@ static void note_darkness(const struct relume_image *frame, const struct relight
     if (o->every_light || o->pass != RELUME_PASS_COLOUR || given(o, &o->develop.exposure) ||
         relume_image_saves_linear(path) || ev == 0.0 || top >= dark)
         return;
-    describe_low_light(low, o, info);
+    describe_low_light(low, renderer);
     announce(&o->args, RELUME_NOTE,
              "%s: nearly black, its bright parts are %.1f %% of white; --exposure auto adds %.1f "
              "stops%s",
@@ -492,7 +489,7 @@ static relume_status draw_picture(relume_renderer *renderer, const relume_object
     if (!status && o->pass == GLARE_PASS)
         status = add_glare(&frame, renderer, o, camera);
     if (!status)
-        note_darkness(&frame, o, relume_pack_info(pack), path);
+        note_darkness(&frame, o, renderer, path);
     if (!status && o->pass == RELUME_PASS_NORMALS)
         show_normals(&frame, path);
     else if (!status)
@@ -548,8 +545,8 @@ static relume_status draw_every_light(relume_renderer *renderer, const relume_ob
 }
 
 static relume_status render(const struct relight_options *o, struct relume_camera *camera,
-                            struct relume_frame_params params, const struct relume_light *lights,
-                            int count)
+                            struct relume_frame_params params, relume_rig *rig,
+                            const struct relume_light *lights, int count)
 {
     relume_pack *pack;
     relume_renderer *renderer = NULL;
@@ -580,6 +577,8 @@ static relume_status render(const struct relight_options *o, struct relume_camer
     params.capture = capture;
     if (!status)
         status = place_eye(camera, pack, o);
+    if (!status)
+        status = aim_lights(&o->args, &o->lighting, rig, pack, o->args.input[0], &lights, &count);
     if (!status)
         status = relume_renderer_create(&renderer, pack, &params);
     if (!status)
@@ -745,9 +744,9 @@ static relume_status run_relight(const struct args *args)
     if (!status)
         status = check_pass(o);
     if (!status)
-        status = parse_lights(args, &o->lighting, &rig, &lights, &count);
+        status = parse_lights_of_file(args, &o->lighting, &rig, &lights, &count);
     if (!status)
-        status = render(o, &camera, params, lights, count);
+        status = render(o, &camera, params, rig, lights, count);
     if (!status)
         status = save_lights(args, &o->lighting, rig);
     relume_rig_destroy(&rig);
@@ -757,7 +756,7 @@ static relume_status run_relight(const struct args *args)
 const struct command command_relight = {
     COMMAND(run_relight, "relight", "FILE -o OUT [OPTION ...]",
             "show a relume file under any lights, from any eye, as a picture",
-            "relume relight statue.exr -o raking.png --light \"dir 1 0 0.2 rgb 1 .9 .8\"", 1, 1),
+            "relume relight statue.exr -o raking.png --light \"raking left rgb 1 .9 .8\"", 1, 1),
     .defaults =
         &(const OPTIONS){.samples = ACROSS, .cpu_mask = ALL_KERNELS, .glare = GLARE_DEFAULTS},
 };

@@ -173,6 +173,11 @@ static relume_status unknown_kind(const char *text, const struct relume_log *log
     snprintf(given, sizeof given, "%.*s", (int)strcspn(word, " \t") % 31, word);
     for (int i = 0; i < GRAMMARS; i++)
         names[i] = relume_light_kind_name(grammars[i].kind);
+    if (!strcmp(given, "raking"))
+        return log_fail(log, RELUME_EINVAL,
+                        "light '%.200s': raking light needs the captured lights of a file; "
+                        "relume relight, query and capture know it, elsewhere write dir x y z",
+                        text);
     const char *near = relume_name_nearest(given, names);
     double v[3];
     if (sscanf(word, "%lf%*[ \t,]%lf%*[ \t,]%lf", &v[0], &v[1], &v[2]) == 3)

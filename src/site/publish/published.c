@@ -409,6 +409,10 @@ relume_status published_write(struct published *f)
         status = write_views(f, &middle, bytes, avif);
     if (!status)
         status = exposure_find(&f->exposure, f->pack, f->site);
+    if (!status)
+        status = relume_relief_find(
+            &f->relief, f->pack,
+            relume_relief_params(.log = f->site->log, .threads = f->site->params->threads));
     if (!status) {
         f->metered = true;
         choose_first(f, f->levels.layers == RELUME_PUBLISH_AVIF ? avif : bytes);
@@ -425,5 +429,6 @@ relume_status published_write(struct published *f)
 void published_free(struct published *f)
 {
     forget(f);
+    relume_relief_destroy(&f->relief);
     relume_pack_destroy(&f->pack);
 }

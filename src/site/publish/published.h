@@ -9,6 +9,7 @@
 #include "site/publish/moving.h"
 #include "site/publish/site.h"
 
+#include <relume/relight/relief.h>
 #include <stdio.h>
 
 // A file that is being published.
@@ -26,8 +27,9 @@ struct published {
     double *minimum, *maximum;  // [planes]
     bool usual;                 // the step is that of nobody's wish
     int first_level;
-    bool metered;     // exposure is known
-    double exposure;  // EV
+    bool metered;                 // exposure is known
+    double exposure;              // EV
+    struct relume_relief relief;  // captured lights that show it
     struct relume_publish_report *report;
 };
 

@@ -159,6 +159,17 @@ static void put_light(struct jwriter *w, const struct published *f)
     }
 }
 
+static void put_relief(struct jwriter *w, const struct relume_relief *relief)
+{
+    if (!relief->count)
+        return;
+    jgap(w, "\n  ");
+    jopen_array(w, "relief");
+    for (int i = 0; i < relief->count; i++)
+        jput_integer(w, NULL, relief->light[i]);
+    jclose(w);
+}
+
 void published_put_json(struct jwriter *w, const struct published *f)
 {
     const struct relume_pack_info *info = relume_pack_info(f->pack);
@@ -173,6 +184,7 @@ void published_put_json(struct jwriter *w, const struct published *f)
     jput_integer(w, "height", info->height);
     geometry_put(w, &info->geometry);
     put_light(w, f);
+    put_relief(w, &f->relief);
     put_levels(w, f);
     if (info->has_shadow || info->has_gloss) {
         jgap(w, "\n  ");

@@ -579,8 +579,8 @@ static relume_status measure_ramp(double *distance, const struct acquisition *s,
     return status;
 }
 
-// Returns by how much a plane under lamps at that distance bends at its border, degrees, when they
-// are taken as distant: its slope is that of the brightness over the light from the side.
+// Returns how far a plane under lamps at that distance bends at its border, degrees, if they count
+// as distant. The slope there is the ramp over the light from the side.
 static double bend_of(const struct acquisition *s, double distance)
 {
     double height = 0.0;

@@ -1,10 +1,9 @@
-// ramp.c - how far lamps stand away, by how brightness changes across a flat matte surface
+// ramp.c - the distance of near lights, by how brightness changes across a flat matte surface
 //
 // Under a lamp at P a matte plane is as bright as P.z / |P - p|^3. The logarithm of that is taken
-// from the photographs' logarithms; what is left must be one number for each pixel and one for each
+// from the photographs' logarithms. The rest must be one number for each pixel and one for each
 // photograph. Its median size says how well a distance fits. Most of what a ball capture shows is
-// the table. A curved surface under distant lamps has a ramp too, and is tried in place of the
-// plane.
+// the table. A curved surface under distant lights has a ramp too, and is also tried.
 #include "capture/acquire/ramp.h"
 
 #include "core/base/memory.h"
@@ -212,7 +211,7 @@ static void subtract_photographs(struct ramp *r)
     }
 }
 
-// What lamps at a distance from a plane leave of the changes of brightness, or distant lamps above
+// What lamps at a distance from a plane leave of the changes of brightness, or distant lights above
 // a surface with `slope` at its border; neither: all.
 static double left_by(struct ramp *r, double distance, double slope)
 {

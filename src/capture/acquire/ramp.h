@@ -1,4 +1,4 @@
-// ramp.h - how far lamps stand away, by how brightness changes across a flat matte surface
+// ramp.h - the distance of near lights, by how brightness changes across a flat matte surface
 #ifndef ACQUIRE_RAMP_H
 #define ACQUIRE_RAMP_H
 

@@ -112,7 +112,7 @@ fresh photos raw
 rm raw/*0004.png && head -c 4000 /dev/zero >raw/"$(basename photos/*0004.png .png)".nef
 bad 'a RAW that cannot be read' 'raw/.*0004.nef: a RAW photograph' raw --lights lights.txt
 awk 'NR == 4 { kept = $0; next } { print } NR == 5 { print kept }' lights.txt >exchanged.txt
-expect_ok 'two lights exchanged are named' '0003.png does not fit its light' "$RELUME" capture photos --lights exchanged.txt -o out
+expect_ok 'two lights exchanged are named' '0003.png: the ball shows its light' "$RELUME" capture photos --lights exchanged.txt -o out
 check 'both of them, by the ball' grep -q '0004.png: the ball shows its light' err.txt
 rm -rf out
 fresh photos sizes
@@ -125,7 +125,7 @@ rm -rf out
 tail -n 6 lights.txt >swapped.txt
 head -n 6 lights.txt >>swapped.txt
 expect_fail 'another order' 1 'lights .* degrees elsewhere; .* if its lines are put in another order' out "$RELUME" capture photos --lights swapped.txt -o out
-expect_fail 'positions of one ball' 2 'two balls' out "$RELUME" capture photos --ball 48,48,21 --near -o out
+expect_fail 'positions of one ball' 1 'two balls or more, or one ball on a flat' out "$RELUME" capture photos --ball 48,48,21.6 --matte --near -o out
 expect_fail 'an option of brackets' 2 "ghosts is an option of 'relume hdr'" out "$RELUME" capture photos --ghosts -o out
 expect_fail 'a folder that is there' 2 'known' - "$RELUME" capture photos --lights lights.txt -o known
 # a line of numbers for each light, the broken one's too

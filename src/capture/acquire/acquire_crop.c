@@ -91,8 +91,6 @@ relume_status acquire_crop(struct acquisition *s)
         status = find_crop(s, crop);
     else if (s->p.crop[2] || s->p.crop[3])
         status = check_inside(s, crop);
-    s->whole[0] = s->width;
-    s->whole[1] = s->height;
     for (int i = 0; !status && crop[2] && i < s->shots; i++) {
         status = crop_shot(s, &s->shot[i]);
         if (!status && !log_progress(s->p.log, "cropping", (i + 1.0) / s->shots))

@@ -245,8 +245,8 @@ static relume_status take_photograph(struct acquisition *s, int i, struct relume
         status = warn_of_orientation(s, shot);
     if (status)
         return status;
-    s->width = image->width;
-    s->height = image->height;
+    s->width = s->whole[0] = image->width;
+    s->height = s->whole[1] = image->height;
     status = count_ends(shot, image);
     acquire_measure_detail(shot, image);
     if (!status)

@@ -18,7 +18,14 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LEAST_CROSSINGS = 400, MOST_CROSSINGS = 20000, DERIVATIVES = 4, STEPS = 36 };
+// With five lights shadows alone bend the slopes of a small sphere as a wrong axis would.
+enum {
+    LEAST_LIGHTS = 6,
+    LEAST_CROSSINGS = 400,
+    MOST_CROSSINGS = 20000,
+    DERIVATIVES = 4,
+    STEPS = 36
+};
 static const double UPRIGHT = 0.5;  // z of normals: steeper ones end in occlusions
 static const float DARK = 0.05f;    // albedo, of the brightest tenth: noise rules
 static const double FLAT = 0.8;     // share of the crossings that change least: left out
@@ -70,7 +77,7 @@ static bool invert_lights(const struct acquisition *s, double m[9])
             m[k] += v[k / 3] * v[k % 3];
         n++;
     }
-    return n >= 3 && !lsq_invert(m, 3) && n * fmax(fmax(m[0], m[4]), m[8]) < MOST_NOISE;
+    return n >= LEAST_LIGHTS && !lsq_invert(m, 3) && n * fmax(fmax(m[0], m[4]), m[8]) < MOST_NOISE;
 }
 
 // A photograph as it is compared, linear, one channel. Aligned photographs are kept small alone.

@@ -244,7 +244,9 @@ relume_status object_find(struct relume_rect *out, bool *relief, const struct ob
         status = find_relief(&m, s);
     if (!status)
         status = find_object(&object, &m);
-    *out = status ? (struct relume_rect){0} : place_object(s, &object);
+    *out = (struct relume_rect){.width = 0};
+    if (!status)
+        *out = place_object(s, &object);
     *relief = object.sum > 0.0;
     mem_free(m.relief);
     mem_free(m.ball);

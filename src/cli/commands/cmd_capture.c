@@ -388,7 +388,7 @@ static relume_status follow_object(void *user, const struct relume_captured_obje
     return status || relit ? status : relight(o, &args, file, picture);
 }
 
-static void put_object(struct jwriter *w, const struct relume_captured_object *object)
+static void put_captured_object(struct jwriter *w, const struct relume_captured_object *object)
 {
     jopen_object(w, NULL);
     jput_text(w, "name", object->name);
@@ -408,7 +408,7 @@ static void print_objects(const struct relume_captured_objects *objects)
     jopen_object(&w, NULL);
     jopen_array(&w, "objects");
     for (int i = 0; i < objects->count; i++)
-        put_object(&w, &objects->object[i]);
+        put_captured_object(&w, &objects->object[i]);
     jend(&w);
 }
 

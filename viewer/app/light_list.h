@@ -63,7 +63,8 @@ struct light_preset {
 extern const struct light_preset light_presets[];  // ends with a NULL name
 void light_list_arrange(struct app_state *state, const struct light_preset *preset, bool pole_y);
 // Moves the lights of a raking arrangement to captured ones that show relief. The first one goes to
-// the lowest on `side` (relume_relief_lowest). The others are turned from it as in the preset.
+// the lowest on `side` (relume_relief_lowest). All other lights are turned from it as in the
+// preset.
 void light_list_rake(struct app_state *state, const struct light_preset *preset,
                      const struct relume_relief *relief, struct relume_vec3 side);
 

@@ -109,8 +109,9 @@ RELUME_API double relume_notes_scale(const relume_notes *notes);
 RELUME_RESULT relume_status relume_notes_set_scale(relume_notes *notes, double mm_per_pixel);
 
 // Splits notes by a part of their picture, which may reach beyond it. `inside` has the notes that
-// meet the part, moved, and saved views, on a file of the part's size. `outside` has the others as
-// they were. Both lists have the scale. RELUME_EINVAL for notes on an object, RELUME_ENOMEM.
+// meet the part, moved, and saved views, on a file of the part's size. `outside` has the
+// remaining notes as they were. Both lists have the scale. RELUME_EINVAL for notes on an object,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_notes_crop(relume_notes **inside, relume_notes **outside,
                                               const relume_notes *notes,
                                               const struct relume_rect *part);

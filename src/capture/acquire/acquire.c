@@ -317,8 +317,8 @@ static relume_status name_misfit(struct acquisition *s, int i, double usual)
 }
 
 // Names photographs that contradict their lights. Where one factor mends each of them, lamps have
-// other powers; a large factor is more likely a wrong direction, and of two photographs that were
-// exchanged a factor may mend one.
+// other powers. A large factor is more likely a wrong direction. If two photographs were exchanged,
+// a factor may mend one.
 static relume_status name_outliers(struct acquisition *s)
 {
     const struct relume_photometric *p = &s->out->photometric;

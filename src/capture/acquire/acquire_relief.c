@@ -33,8 +33,8 @@ static const double RELIEF = 0.05;  // change of slopes over two pixels: 0.066 a
                                     // paintings, 0.04 and less on printed boards. Smooth relief
                                     // reaches it in smaller pictures, where noise falls.
 static const double FLOOR = 0.01;   // of the curl's square: errors of the normals
-// Geometric mean of the curl's square, relative to the list as it is: 1.0 and more on 43 sound
-// captures, 0.70 and less where an axis of the same captures is mirrored.
+// Geometric mean of the curl's square, relative to the list as it is. It is 1.0 and more on 43
+// sound captures. Where an axis of the same captures is mirrored, it is 0.70 and less.
 static const double CLEAR = 0.75;
 static const double SURELY = 0.35;  // the same, of relief that does not stand out: 0.46 and more on
                                     // printed boards

@@ -40,8 +40,7 @@ bool jvalue_whole(const jvalue *value, long long least, long long most, int *out
 bool jvalue_truth(const jvalue *value, bool *out);
 bool jvalue_numbers(const jvalue *array, double *out, size_t count);
 
-// Puts an array of integers into an object, in place of a member of that name. Returns false
-// without memory.
+// Sets a member of an object to an array of integers. Returns false without memory.
 bool jvalue_set_integers(jvalue *object, const char *key, const int *value, size_t count);
 
 // Line and column, from 1, of the member `key` of item `index` of the root's member `array` in a

@@ -65,7 +65,7 @@ const float *reader_floats(const relume_pack *p, int part, const char *name, int
 relume_status reader_read_header(relume_pack *p);
 relume_status reader_find_parts(relume_pack *p);
 
-// The size of the file's views at a level. An image of such a view becomes that of the part.
+// The size of the file's views at a level. Crops an image of a whole view to the part.
 void reader_level_size(int *width, int *height, const relume_pack *p, int level);
 relume_status reader_crop(struct relume_image *image, const relume_pack *p);
 

@@ -1,6 +1,6 @@
 # tests.mk - tests, benches, fuzz targets, and checks of the sources.
 
-.PHONY: test check check-threads coverage compile-tests bench fuzz fuzzers replay golden headers kept layers metrics lint lint-code lint-words format
+.PHONY: test check check-threads coverage compile-tests bench bench-lossy fuzz fuzzers replay golden headers kept layers metrics lint lint-code lint-words format
 
 UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
 GL_C     := $(wildcard tests/gl/*.c)
@@ -98,6 +98,10 @@ compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) 
 
 bench: all $(BENCH)
 	@tests/bench/run.sh $B
+
+# Bytes, quality and seconds of every way to code planes with loss: make bench-lossy CAPTURES='a.lp b.lp'
+bench-lossy: $B/tests/bench/bench_lossy
+	@$< $(CAPTURES)
 
 fuzz: $(FUZZ)
 	@for f in $(FUZZ); do $$f $(FUZZ_S) || exit 1; done

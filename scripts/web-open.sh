@@ -23,30 +23,37 @@ if ! [ -e "$sources/done" ]; then
         touch done
     )
 fi
-# dav1d without assembly, threads of its own or messages, for the 12 bits that planes have
+# dav1d without assembly, threads of its own or messages, for the 8 or 12 bits that planes have
 dav1d=$(ls -d "$sources"/dav1d-*/)
 dav1d=${dav1d%/}
 mkdir -p "$work/dav1d"
 cp /usr/include/dav1d/version.h "$work/dav1d"
 {
-    for zero in ARCH_AARCH64 ARCH_ARM ARCH_PPC64LE ARCH_X86 ARCH_X86_32 ARCH_X86_64 CONFIG_8BPC CONFIG_LOG ENDIANNESS_BIG HAVE_ASM; do
+    for zero in ARCH_AARCH64 ARCH_ARM ARCH_PPC64LE ARCH_X86 ARCH_X86_32 ARCH_X86_64 CONFIG_LOG ENDIANNESS_BIG HAVE_ASM; do
         echo "#define $zero 0"
     done
-    for one in CONFIG_16BPC HAVE_CLOCK_GETTIME HAVE_POSIX_MEMALIGN HAVE_UNISTD_H; do
+    for one in CONFIG_8BPC CONFIG_16BPC HAVE_CLOCK_GETTIME HAVE_POSIX_MEMALIGN HAVE_UNISTD_H; do
         echo "#define $one 1"
     done
-} >"$work/config.h"
+} >"$work/config.new"
+if cmp -s "$work/config.new" "$work/config.h"; then
+    rm "$work/config.new"
+else
+    rm -f "$work"/dav1d*.o
+    mv "$work/config.new" "$work/config.h"
+fi
 echo '#define DAV1D_VERSION "1.0.0"' >"$work/vcs_version.h"
 
 exr=$(ls -d "$sources"/openexr-*/)src/lib/OpenEXRCore zlib=$(ls -d "$sources"/zlib-*/)
 include="-I$exr -I/usr/include/OpenEXR -I/usr/include/Imath -I$zlib"
 
-# compile FLAGS FILE...: those that are newer than what was made of them; the names of the objects
+# compile FLAGS FILE...: those that are newer than what was made of them; the names of the objects, which end in `depth`
+depth=
 compile() {
     own=$1
     shift
     for file in "$@"; do
-        object=$work/$(echo "${file#"$sources"/}" | tr / _).o
+        object=$work/$(echo "${file#"$sources"/}" | tr / _)$depth.o
         [ "$object" -nt "$file" ] || emcc $flags $own $include -c "$file" -o "$object"
         echo "$object"
     done
@@ -62,7 +69,10 @@ of() { # FOLDER NAME...
 theirs=$(compile '-O2 -w' $(ls "$exr"/*.c | grep -v '/debug\.c') $(of "$zlib" adler32 compress crc32 deflate inffast inflate inftrees trees uncompr zutil))
 theirs="$theirs $(compile "-O2 -w -I$dav1d -I$dav1d/include -I$work -I$work/dav1d" \
     $(ls "$dav1d"/src/*.c | grep -v '_tmpl\.c'))"
-theirs="$theirs $(compile "-O2 -w -DBITDEPTH=16 -I$dav1d -I$dav1d/include -I$work -I$work/dav1d" "$dav1d"/src/*_tmpl.c)"
+for depth in 8 16; do
+    theirs="$theirs $(compile "-O2 -w -DBITDEPTH=$depth -I$dav1d -I$dav1d/include -I$work -I$work/dav1d" "$dav1d"/src/*_tmpl.c)"
+done
+depth=
 # our own every time: headers may have changed
 rm -f "$work"/src_* "$work"/web_*
 own="-O2 -Wall -Wextra -Wno-unused-function -Iinclude -Isrc -DOPENS_FILES -I$dav1d/include -I$work -I$work/dav1d"

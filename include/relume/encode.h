@@ -27,6 +27,9 @@ enum relume_moving {
     RELUME_MOVING_NO,
 };
 
+// The PSNR of lossy planes where the effort alone is given, in dB: differences are hardly seen.
+#define RELUME_LOSSY_DB 40.0
+
 // Zero in a field means its default. Everything is borrowed during the call.
 struct relume_encode_capture_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -82,6 +85,8 @@ struct relume_encode_capture_params {
     bool learn_only;      // leave the share of this part there, and write nothing
     const struct relume_team *team;  // processes that run now: each writes a part, the first joins
                                      // them
+
+    enum relume_effort effort;  // of lossy planes; alone it asks for RELUME_LOSSY_DB
 };
 #define relume_encode_capture_params(...)                                                          \
     (&(const struct relume_encode_capture_params){RELUME_SIZED(relume_encode_capture_params),      \

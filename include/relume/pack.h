@@ -35,8 +35,22 @@ enum relume_storage {
 };
 
 // The quantiser's step: every plane's own range over all codes, or one step for all planes, which
-// is the rate-distortion optimum where the functions are orthonormal.
-enum relume_step { RELUME_STEP_DEFAULT = 0, RELUME_STEP_PLANE, RELUME_STEP_COMMON };
+// is the rate-distortion optimum where the functions are orthonormal. Halved: the common step,
+// halved for planes of small range, which few bits then keep as well; for lossy planes.
+enum relume_step {
+    RELUME_STEP_DEFAULT = 0,
+    RELUME_STEP_PLANE,
+    RELUME_STEP_COMMON,
+    RELUME_STEP_HALVED
+};
+
+// Time for lossy planes, which become smaller with it. Default: usual.
+enum relume_effort {
+    RELUME_EFFORT_DEFAULT = 0,
+    RELUME_EFFORT_FAST,
+    RELUME_EFFORT_USUAL,
+    RELUME_EFFORT_SMALLEST
+};
 
 // Pixels of a view that carry little or no information; those outside the mask do not count.
 struct relume_census {

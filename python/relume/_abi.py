@@ -23,6 +23,7 @@ CONSTANTS = {
     "RELUME_CUBE": 4,
     "RELUME_DOMAIN_AUTO": 0, "RELUME_DOMAIN_LINEAR": 1, "RELUME_DOMAIN_DISPLAY": 2,
     "RELUME_MOVING_DEFAULT": 0, "RELUME_MOVING_AUTO": 1, "RELUME_MOVING_YES": 2, "RELUME_MOVING_NO": 3,
+    "RELUME_EFFORT_DEFAULT": 0, "RELUME_EFFORT_FAST": 1, "RELUME_EFFORT_USUAL": 2, "RELUME_EFFORT_SMALLEST": 3,
     "RELUME_PYRAMID_DEFAULT": 0, "RELUME_PYRAMID_YES": 1, "RELUME_PYRAMID_NO": 2,
     "RELUME_MOVING_MOVES": 1, "RELUME_REACHED": 0,
     "RELUME_FRAME_DEFAULT": 0, "RELUME_FRAME_VIEW": 1, "RELUME_FRAME_EYE": 2,
@@ -84,7 +85,7 @@ struct relume_encode_capture_params { size_t struct_size; void *log; int threads
     double ridge; bool no_ridge; int domain; struct relume_transfer display; int shadows; int highlights;
     int storage; int step; int compression; int pyramid; bool no_depth; void *books; bool share;
     double psnr_db, bytes_per_pixel, jnd; void *writer; int part, parts; char *options; char *learnt; bool learn_only;
-    void *team; };
+    void *team; int effort; };
 struct relume_moving_report { int outcome; int lights; double faded_db, moved_db; char *expected;
     relume_status status; };
 struct relume_encode_result { int made; void *basis; int coefficients; bool joint; int lights, views; int domain;

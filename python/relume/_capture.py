@@ -67,6 +67,13 @@ def _moving(value: bool | str | None, what: str) -> int:
     return CONSTANTS["RELUME_MOVING_" + _MOVING[value]]
 
 
+def _effort(value: str | None) -> int:
+    known = {None: "DEFAULT", "fast": "FAST", "usual": "USUAL", "smallest": "SMALLEST"}
+    if value not in known:
+        raise UsageError(f"effort '{value}' is unknown; expected fast, usual or smallest")
+    return CONSTANTS["RELUME_EFFORT_" + known[value]]
+
+
 def name_of(address: int) -> str:
     """Of a basis or interpolant: structs that begin with their name."""
     return ctypes.c_char_p.from_address(address).value.decode()
@@ -272,6 +279,7 @@ class Capture(Handle):
                domain: str | None = None, bits: str | int | None = None,
                compression: str | None = None, pyramid: bool | None = None, depth: bool = True,
                psnr_db: float = 0.0, bytes_per_pixel: float = 0.0, jnd: float = 0.0,
+               effort: str | None = None,
                shadows: bool | str | None = None, highlights: bool | str | None = None,
                threads: int = 0,
                progress: Progress | None = None) -> tuple[bytes | None, EncodeReport]:
@@ -290,7 +298,8 @@ class Capture(Handle):
             storage=parse(lib.relume_storage_parse, bits, "bits"), **domain_of(domain),
             compression=parse(lib.relume_compression_parse, compression, "compression"),
             pyramid=_PYRAMIDS[pyramid], no_depth=not depth, psnr_db=psnr_db,
-            bytes_per_pixel=bytes_per_pixel, jnd=jnd, shadows=_moving(shadows, "shadows"),
+            bytes_per_pixel=bytes_per_pixel, jnd=jnd, effort=_effort(effort),
+            shadows=_moving(shadows, "shadows"),
             highlights=_moving(highlights, "highlights"),
             writer=ctypes.addressof(buffer.writer) if path is None else None)
         name = None if path is None else os.fsencode(path)

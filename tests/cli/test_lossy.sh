@@ -22,6 +22,17 @@ for capture in bust room slab; do
     relume check $capture.exr >/dev/null
 done
 
+# ---- efforts: the same quality; more time never takes more bytes
+"$RELUME" synth bust -o wide --size 160 --lights 16 --samples 1 -q
+for effort in fast usual smallest; do
+    relume encode wide -o $effort.exr --effort $effort --psnr 36
+    is_near "effort $effort: 36 dB are 36 dB" $effort.exr wide 36
+    relume check $effort.exr >/dev/null
+done
+below 'usual is smaller than fast' "$(wc -c <usual.exr)" "$(wc -c <fast.exr)"
+below 'smallest is smaller than usual' "$(wc -c <smallest.exr)" "$(wc -c <usual.exr)"
+expect_ok 'an effort alone asks for 40 dB' 'at (39\.[7-9]|40\.[0-3]) dB PSNR .* coded with loss' "$RELUME" encode wide -o alone.exr --effort fast
+
 # ---- bytes, asked for and kept
 relume encode bust -o small.exr --bytes-per-pixel 6 --no-depth
 below '--bytes-per-pixel keeps its size' "$(wc -c <small.exr)" $((40 * 40 * 6 + 1))
@@ -67,6 +78,7 @@ fails() { # status name COMMAND ...
 }
 fails 2 'two targets' encode bust -o x.exr --psnr 34 --bytes-per-pixel 1
 fails 2 'a target and bits' encode bust -o x.exr --psnr 34 --bits 8
+fails 2 'an effort and bits' encode bust -o x.exr --effort fast --bits 8
 fails 2 'a target and codebooks' encode bust -o x.exr --psnr 34 --codebook 16
 size=$(wc -c <large.exr)
 cp large.exr bad.exr

@@ -262,7 +262,7 @@ static void test_refusals(void **state)
         {{.quality_db = 30, .coefficients = 9}, RELUME_EINVAL, "--quality chooses"},
         {{.quality_db = 30, .robust = true}, RELUME_EINVAL, "--quality chooses"},
         {{.quality_db = 30, .books = &books}, RELUME_EINVAL, "--quality chooses"},
-        {{.psnr_db = 30, .bytes_per_pixel = 1}, RELUME_EINVAL, "expected one of the two"},
+        {{.psnr_db = 30, .bytes_per_pixel = 1}, RELUME_EINVAL, "expected one of the first two"},
         {{.psnr_db = 30, .storage = RELUME_STORE_8}, RELUME_EINVAL, "choose bits"},
         {{.psnr_db = 30, .step = RELUME_STEP_PLANE}, RELUME_EINVAL, "choose bits"},
         {{.psnr_db = 30, .compression = RELUME_COMPRESS_ZIP}, RELUME_EINVAL, "choose bits"},

@@ -61,7 +61,8 @@ static void make_view(struct made *m, int width, int height, bool colour, int vi
                                        .offset = offset};
     assert_int_equal(relume_coefficients_keep(&m->coefficients, &codes, NULL), RELUME_OK);
     m->order = lossy_order(m->coder);
-    m->shape = (struct lossy_shape){width, height, planes, lossy_in_colour(m->coder), m->order};
+    m->shape =
+        (struct lossy_shape){width, height, planes, lossy_in_colour(m->coder), m->order, NULL};
     assert_int_equal(m->shape.colour, colour);
 }
 
@@ -90,7 +91,8 @@ static struct lossy_words encoded(const struct made *m, int quantiser, int threa
 {
     struct lossy_words words;
     assert_int_equal(lossy_encode(&words, &m->coefficients, 1,
-                                  &(const struct av1_effort){quantiser, AV1_FAST}, threads, NULL),
+                                  &(const struct av1_effort){quantiser, AV1_GOOD_6_SCREEN}, threads,
+                                  NULL),
                      RELUME_OK);
     return words;
 }
@@ -128,6 +130,75 @@ static void test_planes_come_back(void **state)
     }
 }
 
+// Pictures of one component or three, smooth with a little noise; chromas are neutral.
+static void fill_pictures(uint16_t *samples, const struct av1_shape *shape)
+{
+    uint32_t state = 7;
+    for (int p = 0; p < shape->pictures; p++)
+        for (int c = 0; c < shape->components; c++)
+            for (int y = 0; y < shape->height; y++)
+                for (int x = 0; x < shape->width; x++) {
+                    state = state * 1664525u + 1013904223u;
+                    const double v = 2000.0 + 1200.0 * sin(0.1 * x + 0.4 * p) * cos(0.07 * y);
+                    *samples++ = c ? AV1_MIDDLE : (uint16_t)(v + (double)(state >> 26));
+                }
+}
+
+static size_t code_pictures(uint16_t *back, const uint16_t *samples, const struct av1_shape *shape,
+                            const struct av1_effort *effort)
+{
+    struct av1_bytes bytes;
+    assert_int_equal(av1_encode(&bytes, &samples, 1, shape, effort, 2, NULL), RELUME_OK);
+    assert_int_equal(av1_decode(back, shape, &bytes, NULL), RELUME_OK);
+    relume_free(bytes.byte);
+    return bytes.size;
+}
+
+// A mode of libaom that is broken misses whole blocks. Neutral colours stay neutral with few bits.
+static void test_every_preset_comes_back(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2 * AV1_PRESETS; i++) {
+        const struct av1_shape shape = {96, 64, i % 2 ? 3 : 1, 4, NULL};
+        const struct av1_effort effort = {AV1_FINEST, (enum av1_preset_number)(i / 2)};
+        const size_t plane = 96 * 64, n = plane * 4 * (size_t)shape.components;
+        uint16_t *samples = malloc(n * sizeof *samples), *back = malloc(n * sizeof *back);
+        fill_pictures(samples, &shape);
+        code_pictures(back, samples, &shape, &effort);
+        // a step is 77 codes with 8 bits and 32 with 12, and errors are even within it
+        assert_true(rms(back, samples, n) < (av1_presets[i / 2].bits == 8 ? 77.0 : 32.0) / 3.0);
+        for (size_t k = 0; k < n; k++)
+            if (k / plane % (size_t)shape.components)
+                assert_int_equal(back[k], AV1_MIDDLE);
+        free(samples);
+        free(back);
+    }
+}
+
+// A step that was halved thrice is coded by a quantiser that is eight times as coarse.
+static void test_halved_steps_are_coded_coarsely(void **state)
+{
+    static const unsigned char halved[4] = {3, 3, 3, 3};
+    static const enum av1_preset_number preset[] = {AV1_GOOD_6, AV1_REALTIME_7};
+    (void)state;
+    for (size_t i = 0; i < sizeof preset / sizeof *preset; i++) {
+        const struct av1_shape whole = {96, 64, 1, 4, NULL}, shape = {96, 64, 1, 4, halved};
+        const struct av1_effort effort = {6 * AV1_STEPS, preset[i]};
+        enum { N = 96 * 64 * 4 };
+        uint16_t *samples = malloc(N * sizeof *samples), *back = malloc(N * sizeof *back);
+        fill_pictures(samples, &whole);
+        const size_t fine = code_pictures(back, samples, &whole, &effort);
+        const double near = rms(back, samples, N);
+        const size_t coarse = code_pictures(back, samples, &shape, &effort);
+        const double far = rms(back, samples, N);
+        assert_true(2 * coarse < fine);
+        // noise of 64 codes is what a coarse step cannot keep
+        assert_true(far > 1.2 * near && far < 8.0 * near);
+        free(samples);
+        free(back);
+    }
+}
+
 // All of a view and a part of it, as the view of one tile would come back.
 static void test_a_trial_is_what_would_be_read(void **state)
 {
@@ -138,7 +209,7 @@ static void test_a_trial_is_what_would_be_read(void **state)
         make(&m, WIDTH, HEIGHT, colour);
         const struct relume_rect all = {0, 0, WIDTH, HEIGHT}, some = {5, 3, 16, 9};
         const size_t n = (size_t)m.shape.planes * WIDTH * HEIGHT;
-        const struct av1_effort effort = {120, AV1_FAST};
+        const struct av1_effort effort = {120, AV1_GOOD_6_SCREEN};
         uint16_t *back = malloc(n * sizeof *back), *before = malloc(n * sizeof *before),
                  *after = malloc(n * sizeof *after);
         const struct lossy_words words = encoded(&m, effort.quantiser, 1);
@@ -211,7 +282,7 @@ static void test_threads_change_nothing(void **state)
 // Three tiles in two pieces, as those of two machines: what they hold, and both together.
 static void test_tiles_alone_are_those_of_the_view(void **state)
 {
-    const struct av1_effort effort = {122, AV1_FAST};
+    const struct av1_effort effort = {122, AV1_GOOD_6_SCREEN};
     struct made m;
     struct lossy_held held;
     struct lossy_words some, rest, again;
@@ -326,7 +397,7 @@ static void test_words_are_not_believed(void **state)
             RELUME_EDAMAGED);
         w.word[i] ^= 0x80000001u;
     }
-    const struct lossy_shape other = {32, 24, m.shape.planes, true, m.order};
+    const struct lossy_shape other = {32, 24, m.shape.planes, true, m.order, NULL};
     uint16_t *wide = malloc((size_t)m.shape.planes * 32 * 24 * sizeof *wide);
     assert_int_equal(lossy_decode(wide, &other,
                                   &(const struct relume_rect){0, 0, other.width, other.height}, &w,
@@ -352,9 +423,9 @@ static void test_a_group_is_predicted_from_its_anchor(void **state)
         make_view(&m[v], 600, 48, true, v);
         from[v] = m[v].coefficients;
     }
-    assert_int_equal(
-        lossy_encode(group, from, VIEWS, &(const struct av1_effort){80, AV1_FAST}, 2, NULL),
-        RELUME_OK);
+    assert_int_equal(lossy_encode(group, from, VIEWS,
+                                  &(const struct av1_effort){80, AV1_GOOD_6_SCREEN}, 2, NULL),
+                     RELUME_OK);
     const struct lossy_words alone = encoded(&m[2], 80, 1);
     const size_t n = (size_t)m->shape.planes * 600 * 48;
     uint16_t *back = malloc(n * sizeof *back);
@@ -489,6 +560,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_planes_come_back),
+        cmocka_unit_test(test_every_preset_comes_back),
+        cmocka_unit_test(test_halved_steps_are_coded_coarsely),
         cmocka_unit_test(test_a_trial_is_what_would_be_read),
         cmocka_unit_test(test_a_rectangle_is_that_of_the_view),
         cmocka_unit_test(test_threads_change_nothing),

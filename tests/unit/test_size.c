@@ -89,7 +89,7 @@ static void test_with_loss(void **state)
     (void)state;
     struct coded_slab s = {.capture = NULL};
     struct relume_pack_contents c;
-    const struct av1_effort effort = {40 * AV1_STEPS, AV1_FAST};
+    const struct av1_effort effort = {40 * AV1_STEPS, AV1_GOOD_6_SCREEN};
     struct lossy_words words = {0};
     open_slab(&s);
     CHECK_OK(lossy_encode(&words, s.made.coefficients, 1, &effort, 1, NULL));

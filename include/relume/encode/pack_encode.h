@@ -50,6 +50,7 @@ struct relume_pack_encode_params {
                    // distant lights; not in parts or with reduced levels
     const struct relume_image *gloss;  // the model of moving highlights, of the
                                        // only view; likewise, and without `shadows`. Default: none
+    enum relume_effort effort;         // of lossy planes
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \

@@ -19,6 +19,7 @@ struct encode_options {
     struct domain_choice domain;
     enum relume_compression compression;
     enum relume_pyramid pyramid;
+    enum relume_effort effort;
     enum relume_moving shadows, highlights;
     struct relume_transfer transfer;
     double quality, psnr, jnd, bytes_per_pixel, ridge, assume_depth;
@@ -60,6 +61,9 @@ static const struct option options[] = {
     NUMBER("--bytes-per-pixel", bytes_per_pixel, "B",
            "compress with loss: the best quality within this many bytes per pixel of each view",
            1e-3, 100),
+    NAME("--effort", effort, "E",
+         "time for lossy planes: fast, usual or smallest; alone it means --psnr 40",
+         RELUME_EFFORT_FAST, "fast", "usual", "smallest"),
     NUMBER("--quality", quality, "DB",
            "basis auto: the fewest coefficients, at most 128, that reproduce the photographs at "
            "this PSNR; default: 38",
@@ -174,6 +178,7 @@ static struct relume_encode_capture_params params_of(const struct encode_options
         .psnr_db = o->psnr,
         .bytes_per_pixel = o->bytes_per_pixel,
         .jnd = o->jnd,
+        .effort = o->effort,
         .part = o->part.part,
         .parts = o->part.parts,
         .learnt = o->learnt,

@@ -65,8 +65,8 @@ static relume_status find_words(struct coding *c, struct relume_fidelity *report
     struct rate_result result;
     double allowed = 0.0;
     relume_status status = find_allowed(&allowed, c);
-    const struct rate_target target = {f->p->psnr_db,
-                                       allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0))};
+    const struct rate_target target = {
+        f->p->psnr_db, allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0)), f->p->effort};
     if (!status)
         status = rate_encode(f->words, &result, f->coefficients, f->coder, &c->groups, f->capture,
                              &target, f->encode, c->team ? &by : NULL);

@@ -17,9 +17,10 @@ static const double WORTH_IT_DB = 0.5;
 enum { MANY_PIXELS = 512 * 512 };
 static const double CLEARLY_DB = 1.5;
 
-// Bytes are asked for to be relit from: a decibel of lights left out then counts as so many of the
-// captured ones, unless one of the two is ahead there by more than these.
-static const double LEFT_OUT_COUNTS = 8.0, FAR_DB = 6.0;
+// The weight of a decibel of unseen lights against one of captured lights. It is the same for a
+// quality and for bytes, so that both lead to the same file. Windows are coded at two steps for a
+// number of bytes, unless one of the two is ahead by more than FAR_DB.
+static const double LEFT_OUT_COUNTS = 1.0, FAR_DB = 6.0;
 
 // Of a number of the functions, as text in the header (format/pack/functions.h), about six bits
 // each.
@@ -134,8 +135,7 @@ static relume_status share_contest(struct contest *c, bool by_windows)
 static double ahead(const struct contest *c)
 {
     const struct merits *k = &c->known;
-    const double counts = c->p->psnr_db > 0.0 ? 1.0 : LEFT_OUT_COUNTS;
-    return k->merit[1] - k->merit[0] + counts * (k->left_out[1] - k->left_out[0]);
+    return k->merit[1] - k->merit[0] + LEFT_OUT_COUNTS * (k->left_out[1] - k->left_out[0]);
 }
 
 relume_status contest_keep_better(relume_coder **out, relume_coder *pictures,

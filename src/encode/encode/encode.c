@@ -315,7 +315,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         .log = p.log,
         .domain = relume_capture_domain(capture, p.domain),
         .storage = encode_is_coded(&p) ? RELUME_STORE_12 : p.storage,
-        .step = encode_is_coded(&p) ? RELUME_STEP_COMMON : p.step,
+        .step = encode_is_coded(&p) ? RELUME_STEP_HALVED : p.step,
         .threads = p.threads,
         .scratch = p.writer ? NULL : path,
         .display = p.display,

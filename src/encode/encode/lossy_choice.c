@@ -47,7 +47,7 @@ relume_status relume_pack_decide(relume_coder **out, const relume_capture *captu
     const struct relume_project_params encode = {.log = p.log,
                                                  .domain = RELUME_DOMAIN_DISPLAY,
                                                  .storage = RELUME_STORE_12,
-                                                 .step = RELUME_STEP_COMMON,
+                                                 .step = RELUME_STEP_HALVED,
                                                  .threads = p.threads,
                                                  .team = p.team};
     const int lights = relume_capture_manifest(capture)->lights;

@@ -8,18 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-// At the same quantiser the slow coder is about a whole step better in quality, and in bytes two.
-enum { SLOW_IS_FINER = AV1_STEPS };
-
 // What a step of the quantiser is worth, before there are two trials, in quality or in bytes.
 static const double USUAL_DB = 0.1, USUAL_BYTES = 0.15;
 
-// What is tried first: of views that are alone three, else two groups; by the slow coder too where
-// all of them are more than so many times that.
+// Groups that are tried first: of views that are alone three, else two, where there are more than
+// twice as many.
 enum { MOST_ALONE = 3, MOST_GROUPS = 2, WORTH_TRYING = 2 };
 
-// The most samples of all pictures that are coded slowly.
-static const double MOST_SLOW = 64e6;
+// The most samples that the usual effort codes by its better presets, which take some seconds.
+static const double MOST_THOROUGH = 1e6, MOST_UNHURRIED = 16e6;
 
 struct rate {
     struct trial_plan plan;
@@ -28,7 +25,7 @@ struct rate {
     int last, best;                        // quantisers of the search: tried last; nearest
     double step_db;                        // what a step of the quantiser is worth
     struct rate_target target;             // bytes of all views
-    struct trial trial[AV1_COARSEST + 1];  // at the plan's speed, some of them of fewer groups
+    struct trial trial[AV1_COARSEST + 1];  // by the plan's preset, some of them of fewer groups
 };
 
 static int views_of(const struct view_groups *g)
@@ -91,16 +88,17 @@ static double guess_quantiser(void *context, const struct target_bracket *b)
     return within(is_enclosed(b) ? between(r, (int)b->low, (int)b->high) : beyond(r, r->last));
 }
 
-// So near that another trial is not worth its time, the less so the more there were: qualities are
-// wanted within 0.3 dB, and bytes that are all but used are used. Roughly, both sides are enough.
+// So near that another trial is not worth its time, the less so the more there were and the longer
+// it takes: bytes that are all but used are used. Roughly, both sides are enough.
 static bool is_close(void *context, const struct target_bracket *b)
 {
     const struct rate *r = context;
     const double s = surplus(r, r->last);
+    const bool quick = av1_presets[r->plan.preset].bits == 8;
     if (r->rough)
         return fabs(s) < 0.5 || is_enclosed(b);
     if (r->target.psnr_db > 0.0)
-        return fabs(s) < (b->trials > 1 ? 0.29 : 0.25);
+        return fabs(s) < (quick ? 0.1 : 0.25);
     return s <= SPARE && s > (b->trials > 1 ? -0.8 : -0.4);
 }
 
@@ -139,8 +137,9 @@ static relume_status try_quantiser(void *context, double at, double *missing)
 }
 
 // From *quantiser on to the one that meets the target best, on `tried` groups; or, roughly, to
-// where it is to be sought. What was coded at that speed is not coded again.
-static relume_status find_quantiser(struct rate *r, int tried, int speed, int *quantiser)
+// where it is to be sought. Groups that this preset has coded are not coded again.
+static relume_status find_quantiser(struct rate *r, int tried, enum av1_preset_number preset,
+                                    int *quantiser)
 {
     const struct target_search search = {.may_equal = true,
                                          .narrow = 1.0,
@@ -150,10 +149,10 @@ static relume_status find_quantiser(struct rate *r, int tried, int speed, int *q
                                          .context = r};
     struct target_bracket b = {
         .low = AV1_FINEST - 1, .high = AV1_COARSEST + 1, .at = *quantiser};  // not tried
-    if (r->plan.speed != speed)
+    if (r->plan.preset != preset)
         forget(r);
     r->plan.tried = tried;
-    r->plan.speed = speed;
+    r->plan.preset = preset;
     r->last = 0;
     const relume_status status = target_search(&b, &search);
     if (!status)
@@ -161,49 +160,86 @@ static relume_status find_quantiser(struct rate *r, int tried, int speed, int *q
     return status;
 }
 
-// The slow coder where it takes no more than some minutes and much is to be gained: the pictures
-// themselves for a quality.
-static int speed_for(const relume_coder *coder, const relume_capture *capture,
-                     const struct rate_target *target)
+// ---------------------------------------------------------------- efforts
+
+static double samples_of(const relume_coder *coder, const relume_capture *capture)
 {
-    const struct relume_coder_info *info = relume_coder_info(coder);
-    const double samples = (double)relume_capture_width(capture) * relume_capture_height(capture) *
-                           info->planes * relume_capture_manifest(capture)->views;
-    return target->psnr_db > 0.0 && !info->basis->learned && samples <= MOST_SLOW ? AV1_SLOW
-                                                                                  : AV1_USUAL;
+    return (double)relume_capture_width(capture) * relume_capture_height(capture) *
+           relume_coder_info(coder)->planes * relume_capture_manifest(capture)->views;
 }
 
-// The fast coder finds about where, a slower one the step itself, then that of all groups.
+static enum av1_preset_number preset_of(enum relume_effort effort, double samples)
+{
+    return effort == RELUME_EFFORT_FAST                                  ? AV1_REALTIME_9
+           : effort == RELUME_EFFORT_SMALLEST || samples < MOST_THOROUGH ? AV1_GOOD_4
+           : samples < MOST_UNHURRIED                                    ? AV1_REALTIME_6
+                                                                         : AV1_REALTIME_7;
+}
+
+// A preset that finds the quantiser of a slower one roughly. The slower one is coarser at the same
+// quality by so many quantisers, of pictures and of components (measured: make bench-lossy).
+struct quick {
+    enum av1_preset_number preset;
+    int coarser[2];
+};
+
+static struct quick quick_for(enum av1_preset_number preset, double samples)
+{
+    static const struct quick for_good_4 = {AV1_REALTIME_6_12, {-9, -3}};
+    static const struct quick for_realtime_6 = {AV1_REALTIME_9, {5, 2}};
+    return samples < MOST_THOROUGH    ? (struct quick){preset, {0, 0}}
+           : preset == AV1_GOOD_4     ? for_good_4
+           : preset == AV1_REALTIME_6 ? for_realtime_6
+                                      : (struct quick){preset, {0, 0}};
+}
+
+// Some groups first, or all by a quicker preset; then all by `preset`, from where that got to.
+static relume_status find_by_preset(struct rate *r, enum av1_preset_number preset, double samples,
+                                    bool joint, struct av1_effort *effort)
+{
+    const struct view_groups *g = r->plan.groups;
+    const int some = views_of(g) > g->count ? MOST_GROUPS : MOST_ALONE;
+    const int tried = WORTH_TRYING * some < g->count ? some : g->count;
+    const struct quick quick = quick_for(preset, samples);
+    *effort = (struct av1_effort){RATE_FIRST_GUESS, preset};
+    r->rough = quick.preset != preset;
+    relume_status status = RELUME_OK;
+    if (r->rough || tried < g->count)
+        status = find_quantiser(r, tried, quick.preset, &effort->quantiser);
+    effort->quantiser = within(effort->quantiser + quick.coarser[joint]);
+    r->rough = false;
+    r->done = 0.4;
+    return status ? status : find_quantiser(r, g->count, preset, &effort->quantiser);
+}
+
+// 8 bits are too coarse for some qualities.
+static bool wants_more_bits(const struct rate *r, const struct av1_effort *effort)
+{
+    return av1_presets[effort->preset].bits == 8 && effort->quantiser == AV1_FINEST &&
+           surplus(r, AV1_FINEST) < 0.0;
+}
+
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           relume_coefficients *const *coefficients, const relume_coder *coder,
                           const struct view_groups *groups, const relume_capture *capture,
                           const struct rate_target *target, const struct relume_project_params *p,
                           const struct rate_team *by)
 {
-    const int some = views_of(groups) > groups->count ? MOST_GROUPS : MOST_ALONE;
-    const int tried = groups->count < some ? groups->count : some;
     struct rate r = {.plan = {.coefficients = coefficients,
                               .groups = groups,
                               .capture = capture,
                               .p = p,
                               .by = by},
-                     .rough = true,
                      .step_db = target->psnr_db > 0.0 ? USUAL_DB : USUAL_BYTES,
                      .target = *target};
-    const int speed = speed_for(coder, capture, target);
-    int *quantiser = &result->effort.quantiser;
-    result->effort.speed = speed;
-    *quantiser = RATE_FIRST_GUESS;
-    relume_status status = find_quantiser(&r, tried, AV1_FAST, quantiser);
-    r.rough = false;
-    r.done = 0.2;
-    *quantiser = within(*quantiser + (target->psnr_db > 0.0 ? 1 : -2) * SLOW_IS_FINER);
-    if (!status && WORTH_TRYING * tried < groups->count)
-        status = find_quantiser(&r, tried, speed, quantiser);
-    r.done = 0.5;
-    if (!status)
-        status = find_quantiser(&r, groups->count, speed, quantiser);
-    struct trial *best = &r.trial[*quantiser];
+    const double samples = samples_of(coder, capture);
+    struct av1_effort *effort = &result->effort;
+    const bool joint = relume_coder_info(coder)->joint;
+    relume_status status =
+        find_by_preset(&r, preset_of(target->effort, samples), samples, joint, effort);
+    if (!status && wants_more_bits(&r, effort))
+        status = find_by_preset(&r, AV1_REALTIME_6_12, samples, joint, effort);
+    struct trial *best = &r.trial[effort->quantiser];
     result->psnr_db = best->psnr_db;
     result->bytes = best->bytes;
     if (!status) {
@@ -240,7 +276,7 @@ relume_status rate_merit(double *merit, relume_coefficients *coefficients, int v
     r.target.bytes = fmax(target->bytes - header, 1.0);
     relume_status status = groups_alone(&group, info->coder, info->width, info->height);
     if (!status)
-        status = find_quantiser(&r, 1, AV1_FAST, &quantiser);
+        status = find_quantiser(&r, 1, RATE_QUICK, &quantiser);
     for (int q = AV1_FINEST; !status && q <= AV1_COARSEST; q++)
         if (r.trial[q].words && fabs(surplus(&r, q)) < fabs(surplus(&r, nearest)))
             nearest = q;

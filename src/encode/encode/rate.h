@@ -6,13 +6,17 @@
 #include "format/coder/coding.h"
 
 #include <relume/capture.h>
+#include <relume/pack.h>
 
-// Where the search begins, which is about what a usual quality takes.
-enum { RATE_FIRST_GUESS = 30 * AV1_STEPS };
+// Where the search begins, which is about what a usual quality takes; and the preset by which
+// coders are compared.
+enum { RATE_FIRST_GUESS = 26 * AV1_STEPS };
+static const enum av1_preset_number RATE_QUICK = AV1_REALTIME_9;
 
 struct rate_target {
     double psnr_db;  // of the captured images, pooled; or 0
     double bytes;    // of the words of all views
+    enum relume_effort effort;
 };
 struct rate_result {
     double psnr_db;  // as the target's
@@ -21,11 +25,11 @@ struct rate_result {
 };
 
 // words[views] of the coefficients of all views by `coder`, of the coarsest quantiser that reaches
-// the PSNR best or the finest that keeps the bytes. It is found on some of the groups, and
-// corrected on all. Where the target is out of reach it is the finest or coarsest. Caller frees the
-// words, also on failure. `by` is NULL where nobody shares the work; of a team words have the tiles
-// of this member alone, and those of views without any are NULL. RELUME_ENOMEM, RELUME_EIO,
-// RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
+// the PSNR best or the finest that keeps the bytes. It is found on some of the groups, by a quicker
+// preset where that of the effort takes long, and corrected on all. Where the target is out of
+// reach it is the finest or coarsest. Caller frees the words, also on failure. `by` is NULL where
+// nobody shares the work; of a team words have the tiles of this member alone, and those of views
+// without any are NULL. RELUME_ENOMEM, RELUME_EIO, RELUME_ESYSTEM, RELUME_ECANCEL, an input status.
 relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                           relume_coefficients *const *coefficients, const relume_coder *coder,
                           const struct view_groups *groups, const relume_capture *capture,

@@ -55,6 +55,14 @@ static void decide_moving(struct encode_request *r)
         p->highlights || has_bytes_for(r, MIN_HIGHLIGHT_BYTES) ? p->highlights : RELUME_MOVING_NO;
 }
 
+// Trials begin with a usual quality; an effort alone asks for one that is hardly told from the
+// photographs.
+static double wanted_psnr(const struct relume_encode_capture_params *p)
+{
+    const bool alone = p->effort && p->psnr_db == 0.0 && p->bytes_per_pixel == 0.0;
+    return p->jnd > 0.0 ? RELUME_USUAL_DB : alone ? RELUME_LOSSY_DB : p->psnr_db;
+}
+
 void request_make(struct encode_request *out, const char *path, const relume_capture *capture,
                   const struct relume_encode_capture_params *p)
 {
@@ -80,8 +88,9 @@ void request_make(struct encode_request *out, const char *path, const relume_cap
                  .compression = p->compression,
                  .pyramid = p->pyramid,
                  .no_depth = p->no_depth,
-                 .psnr_db = p->jnd > 0.0 ? RELUME_USUAL_DB : p->psnr_db,
+                 .psnr_db = wanted_psnr(p),
                  .bytes_per_pixel = p->bytes_per_pixel,
+                 .effort = p->effort,
                  .share = p->share,
                  .writer = p->writer,
                  .part = p->part,
@@ -101,7 +110,9 @@ void request_make(struct encode_request *out, const char *path, const relume_cap
     if (request_is_lossy(out) && out->pack.domain == RELUME_DOMAIN_AUTO)
         out->pack.domain = RELUME_DOMAIN_DISPLAY;
     decide_moving(out);
-    out->result.quality_db = p->jnd > 0.0 ? 0.0 : p->psnr_db > 0.0 ? p->psnr_db : p->quality_db;
+    out->result.quality_db = p->jnd > 0.0              ? 0.0
+                             : out->pack.psnr_db > 0.0 ? out->pack.psnr_db
+                                                       : p->quality_db;
 }
 
 bool relume_encode_rereads(const struct relume_encode_capture_params *params)
@@ -142,14 +153,15 @@ static relume_status check_ranges(const struct relume_encode_capture_params *p)
 static relume_status check_loss(const struct relume_encode_capture_params *p)
 {
     const bool jnd = p->jnd > 0.0, psnr = p->psnr_db > 0.0, bytes = p->bytes_per_pixel > 0.0;
-    if (!jnd && !psnr && !bytes)
+    if (!jnd && !psnr && !bytes && !p->effort)
         return RELUME_OK;
     if (p->books || p->storage || p->step || p->compression || p->quality_db > 0.0 ||
         (psnr && bytes))
-        return log_fail(p->log, RELUME_EINVAL,
-                        "--psnr and --bytes-per-pixel choose bits, step and compression; expected "
-                        "one of the two, without --bits, --step, --compression, --quality and "
-                        "--codebook");
+        return log_fail(
+            p->log, RELUME_EINVAL,
+            "--psnr, --bytes-per-pixel and --effort choose bits, step and compression; "
+            "expected one of the first two, without --bits, --step, --compression, --quality and "
+            "--codebook");
     if (jnd && (psnr || bytes || p->parts || p->learnt || p->team))
         return log_fail(p->log, RELUME_EINVAL,
                         "--jnd encodes several times and compares; expected without --psnr, "

@@ -44,7 +44,7 @@ static void code_group(void *context, size_t item, int worker)
     const struct coding_run *c = context;
     const struct trial_plan *plan = c->attempt->plan;
     const struct group_tiles *t = &c->attempt->tiles.group[item];
-    const struct av1_effort effort = {c->attempt->quantiser, plan->speed};
+    const struct av1_effort effort = {c->attempt->quantiser, plan->preset};
     relume_coefficients *from[AV1_MOST_MEMBERS] = {0};
     (void)worker;
     if (!tiles_in(t))
@@ -139,8 +139,8 @@ static relume_status judge_view(struct encode_square *square, const struct trial
     relume_coefficients *c = plan->coefficients[view];
     const struct relume_coefficients_info *info = relume_coefficients_info(c);
     int *order = lossy_order(info->coder);
-    const struct lossy_shape shape = {info->width, info->height, info->planes,
-                                      lossy_in_colour(info->coder), order};
+    const struct lossy_shape shape = {
+        info->width, info->height, info->planes, lossy_in_colour(info->coder), order, NULL};
     const size_t pixels = (size_t)info->width * (size_t)smaller_of(tiles->side, info->height);
     struct decoded_row now = {.row = -1,
                               .codes = mem_array((size_t)info->planes, pixels * sizeof *now.codes)};
@@ -290,7 +290,7 @@ relume_status trial_add_groups(struct trial *t, const struct trial_plan *plan, i
     struct attempt a = {.trial = t, .plan = plan, .quantiser = quantiser};
     static const struct team_work work = {begin_share, code_share, add_share};
     char what[32];
-    snprintf(what, sizeof what, "words.%d.%d.%d", plan->tried, plan->speed, quantiser);
+    snprintf(what, sizeof what, "words.%d.%d.%d", plan->tried, (int)plan->preset, quantiser);
     relume_status status = t->words ? RELUME_OK : create_trial(t, plan->groups);
     if (!status)
         status = team_share(plan->by ? plan->by->team : NULL, what, &work, &a, &coded_tiles_bytes,

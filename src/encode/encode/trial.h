@@ -25,7 +25,8 @@ struct trial_plan {
     const relume_capture *capture;
     const struct relume_project_params *p;
     const struct rate_team *by;  // or NULL
-    int tried, speed;            // of the groups, evenly spread
+    int tried;                   // of the groups, evenly spread
+    enum av1_preset_number preset;
 };
 
 // Results of a quantiser. Zeroed: not tried.

@@ -16,10 +16,17 @@
 enum { WINDOW = 256, MANY_PLANES = 320, ONE_WINDOW = 3 };
 
 enum { FINE, COARSE, STEPS };
-static const int step[STEPS] = {20 * AV1_STEPS, 40 * AV1_STEPS};
+static const int usual_steps[STEPS] = {20 * AV1_STEPS, 40 * AV1_STEPS};
+// For a high quality, which lies between the qualities of these.
+static const int fine_steps[STEPS] = {12 * AV1_STEPS, 28 * AV1_STEPS};
+static const double HIGH_DB = 36.0;
 
 // What half the bytes cost: measured, within these bounds.
 static const double LEAST_SLOPE = 2.0, MOST_SLOPE = 8.0;
+
+// Coding is at least this share of all errors: a line in dB needs one, and of pictures and
+// components that miss too much already nothing is left for it.
+static const double LEAST_SHARE = 0.02;
 
 // A window as a coder's codes before and after loss.
 struct coded_window {
@@ -32,6 +39,7 @@ struct coded_window {
 // these as all others foretell them after loss.
 struct points {
     double bytes[STEPS], square[STEPS], left_out[STEPS];
+    double kept;  // what is missed before loss
 };
 
 // Rows of a window by which foretelling is judged: one of so many.
@@ -65,7 +73,7 @@ static relume_status open_window(struct coded_window *l, const relume_coder *cod
     relume_status status = project_some_rows(&l->coefficients, coder, capture, m->views / 2,
                                              at->top, at->height, encode);
     if (!status)
-        status = coefficients_share_steps(&l->coefficients, 1, false, RELUME_STEP_COMMON);
+        status = coefficients_share_steps(&l->coefficients, 1, false, RELUME_STEP_HALVED);
     if (!status)
         status = captured_create(&l->captured, coder, m->directions, m->lights);
     l->before = mem_array(size, sizeof *l->before);
@@ -86,7 +94,7 @@ static void show(float *shown, float *planes, const struct coded_window *l, cons
 }
 
 // The mean squared difference of what `l` shows after loss from the pictures before.
-static relume_status judge(double *square, const struct coded_window *l,
+static relume_status judge(double *square, const struct coded_window *l, const uint16_t *codes,
                            const struct coded_window *pictures, const struct relume_rect *at)
 {
     const size_t n = (size_t)l->captured.lights * (size_t)at->width;
@@ -99,7 +107,7 @@ static relume_status judge(double *square, const struct coded_window *l,
     double sum = 0.0;
     for (int i = 0; good && i < 3 * at->height; i++) {
         show(want, planes, pictures, pictures->before, at, i / 3, i % 3);
-        show(got, planes, l, l->after, at, i / 3, i % 3);
+        show(got, planes, l, codes, at, i / 3, i % 3);
         for (size_t k = 0; k < n; k++) {
             const double d = (double)fminf(fmaxf(want[k], 0.0f), 1.0f) -
                              (double)fminf(fmaxf(got[k], 0.0f), 1.0f);
@@ -164,9 +172,10 @@ static relume_status judge_left_out(double *square, const struct coded_window *l
 // Of a step by both coders; `b` NULL: without lights left out.
 static relume_status add_window(struct points points[2], const relume_coder *const coder[2],
                                 const relume_capture *capture, const struct relume_rect *at, int s,
-                                const double *b, const struct relume_project_params *encode)
+                                int quantiser, const double *b,
+                                const struct relume_project_params *encode)
 {
-    const struct av1_effort effort = {step[s], AV1_FAST};
+    const struct av1_effort effort = {quantiser, RATE_QUICK};
     struct coded_window window[2] = {{0}, {0}};
     relume_status status = open_window(&window[1], coder[1], capture, at, encode);
     if (!status)
@@ -174,15 +183,18 @@ static relume_status add_window(struct points points[2], const relume_coder *con
     for (int i = 1; !status && i >= 0;
          i--) {  // the pictures first, which the other is compared with
         size_t bytes;
-        double square = 0.0, left_out = 0.0;
+        double square = 0.0, kept = 0.0, left_out = 0.0;
         status = lossy_try(window[i].before, window[i].after, &bytes, window[i].coefficients, at,
                            &effort, encode->threads, encode->log);
         if (!status)
-            status = judge(&square, &window[i], &window[1], at);
+            status = judge(&square, &window[i], window[i].after, &window[1], at);
+        if (!status && i == 0 && s == COARSE)
+            status = judge(&kept, &window[i], window[i].before, &window[1], at);
         if (!status && b)
             status = judge_left_out(&left_out, &window[i], &window[1], at, b);
         points[i].bytes[s] += (double)bytes;
         points[i].square[s] += square;
+        points[i].kept += kept;
         points[i].left_out[s] += left_out;
     }
     close_window(&window[0]);
@@ -193,15 +205,21 @@ static relume_status add_window(struct points points[2], const relume_coder *con
 // The windows of the middle view.
 struct windows {
     int width, height, across, down;
-    double scale;  // pixels of the view for each of theirs
+    double scale;     // pixels of the view for each of theirs
+    const int *step;  // [STEPS]
 };
 
-static struct windows windows_of(const relume_coder *pictures, const relume_capture *capture)
+static struct windows windows_of(const relume_coder *pictures, const relume_capture *capture,
+                                 const struct rate_target *target)
 {
     const int width = relume_capture_width(capture), height = relume_capture_height(capture);
     const int side = relume_coder_info(pictures)->planes > MANY_PLANES ? WINDOW / 2 : WINDOW;
-    struct windows w = {smaller_of(side, width), smaller_of(side, height),
-                        windows_along(width, side), windows_along(height, side), 0.0};
+    struct windows w = {smaller_of(side, width),
+                        smaller_of(side, height),
+                        windows_along(width, side),
+                        windows_along(height, side),
+                        0.0,
+                        target->psnr_db > HIGH_DB ? fine_steps : usual_steps};
     w.scale = (double)width * height / ((double)w.width * w.height * w.across * w.down);
     return w;
 }
@@ -216,27 +234,37 @@ static relume_status add_windows(struct points points[2], const struct windows *
         struct relume_rect at = {.width = w->width, .height = w->height};
         at.left = begin_of(i % w->across, w->across, width, w->width);
         at.top = begin_of(i / w->across, w->down, height, w->height) / BAND_ROWS * BAND_ROWS;
-        status = add_window(points, coder, capture, &at, s, b, encode);
+        status = add_window(points, coder, capture, &at, s, w->step[s], b, encode);
     }
     return status;
 }
 
-// On a line through the coarse point, of so many dB for twice the bytes.
+// The mean squared error of coding alone, of a step.
+static double loss_of(const struct points *p, const struct windows *w, int s)
+{
+    return fmax(p->square[s] - p->kept, LEAST_SHARE * p->square[s]) / (w->across * w->down);
+}
+
+// On a line through the coarse point, of so many dB of the coding error for twice the bytes; the
+// error before coding is added to it.
 static double merit_of(const struct points *p, const struct windows *w, double slope,
                        const struct rate_target *target, double header)
 {
-    const double coarse = decibels(p->square[COARSE] / (w->across * w->down));
+    const double coarse = decibels(loss_of(p, w, COARSE)), kept = p->kept / (w->across * w->down);
     const double bytes = w->scale * p->bytes[COARSE], left = fmax(target->bytes - header, 1.0);
-    return target->psnr_db > 0.0
-               ? rate_merit_of(target->psnr_db, bytes * exp2((target->psnr_db - coarse) / slope),
-                               target, header)
-               : coarse + slope * log2(left / bytes);
+    if (target->psnr_db > 0.0) {
+        const double all = pow(10.0, -0.1 * target->psnr_db);
+        const double wanted = decibels(fmax(all - kept, LEAST_SHARE * all));
+        return rate_merit_of(target->psnr_db, bytes * exp2((wanted - coarse) / slope), target,
+                             header);
+    }
+    return decibels(pow(10.0, -0.1 * (coarse + slope * log2(left / bytes))) + kept);
 }
 
 // Of the line through both points.
-static double slope_of(const struct points *p)
+static double slope_of(const struct points *p, const struct windows *w)
 {
-    const double dB = decibels(p->square[FINE]) - decibels(p->square[COARSE]);
+    const double dB = decibels(loss_of(p, w, FINE)) - decibels(loss_of(p, w, COARSE));
     const double each = dB / fmax(log2(p->bytes[FINE] / p->bytes[COARSE]), 1e-3);
     return fmin(fmax(each, LEAST_SLOPE), MOST_SLOPE);
 }
@@ -294,15 +322,15 @@ relume_status windows_compare(double merit[2], double left_out[2],
                               const struct rate_target *target, const double header[2],
                               double clearly, const struct relume_project_params *encode)
 {
-    const struct windows w = windows_of(coder[1], capture);
-    struct points points[2] = {{{0.0}, {0.0}, {0.0}}, {{0.0}, {0.0}, {0.0}}};
+    const struct windows w = windows_of(coder[1], capture, target);
+    struct points points[2] = {{.kept = 0.0}, {.kept = 0.0}};
     double *b = predictor_of(coder[1]);
     left_out[0] = left_out[1] = 0.0;
     relume_status status = add_windows(points, &w, coder, capture, COARSE, b, encode);
     if (!status && !is_clear(merit, points, &w, target, header, clearly)) {
         status = add_windows(points, &w, coder, capture, FINE, b, encode);
         for (int i = 0; i < 2; i++) {
-            merit[i] = merit_of(&points[i], &w, slope_of(&points[i]), target, header[i]);
+            merit[i] = merit_of(&points[i], &w, slope_of(&points[i], &w), target, header[i]);
             left_out[i] = b ? left_out_of(&points[i], &w, target, header[i]) : 0.0;
         }
     }

@@ -135,6 +135,9 @@ static float least_step(struct range r, int top)
     return r.max - r.min > TINY_RANGE ? (r.max - r.min) / (float)steps : 0.0f;
 }
 
+// 8 bits reach from the finest quantiser to the coarsest one for that many.
+enum { MOST_HALVINGS = 3 };
+
 void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
                                enum relume_step step)
 {
@@ -152,8 +155,12 @@ void coefficients_choose_steps(relume_coefficients *c, const struct range *total
     for (int p = 0; p < c->info.planes; p++) {
         const struct range r = whole_range(total[p], masked);
         const bool colour = coder->luminance && p >= coder->coefficients;
-        if (step == RELUME_STEP_COMMON && top && !colour)
+        if (step >= RELUME_STEP_COMMON && top && !colour) {
+            const float least = c->scale[p];
             c->scale[p] = common;
+            for (int i = 0; step == RELUME_STEP_HALVED && i < MOST_HALVINGS; i++)
+                c->scale[p] *= least > 0.0f && least <= 0.5f * c->scale[p] ? 0.5f : 1.0f;
+        }
         c->scale[p] = c->scale[p] > 0.0f ? c->scale[p] : 1.0f;
         if (c->most)
             c->most[p] = fmaxf(fabsf(r.min), fabsf(r.max));

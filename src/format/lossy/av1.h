@@ -1,4 +1,7 @@
 // av1.h - small pictures of 12-bit samples as AV1 sequences: libaom writes, dav1d reads
+//
+// A preset says how libaom codes and with how many bits a sample. With fewer than 12 bits, samples
+// are rounded before they are coded, so that 0 and AV1_TOP, and the middle of a chroma, stay.
 #ifndef LOSSY_AV1_H
 #define LOSSY_AV1_H
 
@@ -7,28 +10,57 @@
 enum {
     AV1_BITS = 12,
     AV1_TOP = 4095,
+    AV1_MIDDLE = 2048,  // of a chroma
     AV1_STEPS = 4,
     AV1_FINEST = 3 * AV1_STEPS,
     AV1_COARSEST = 63 * AV1_STEPS,
-    AV1_SLOW = 2,
-    AV1_USUAL = 3,
-    AV1_FAST = 6,
     AV1_MOST_MEMBERS = 25
 };
+
+// Rows of av1_presets, the slowest first of each usage.
+enum av1_preset_number {
+    AV1_GOOD_2_SCREEN,
+    AV1_GOOD_3_SCREEN,
+    AV1_GOOD_6_SCREEN,
+    AV1_GOOD_4,
+    AV1_GOOD_6,
+    AV1_INTRA_6,
+    AV1_INTRA_9,
+    AV1_REALTIME_5_12,
+    AV1_REALTIME_6_12,
+    AV1_REALTIME_6,
+    AV1_REALTIME_7,
+    AV1_REALTIME_8,
+    AV1_REALTIME_9,
+    AV1_REALTIME_10,
+    AV1_PRESETS
+};
+enum av1_usage { AV1_GOOD, AV1_INTRA, AV1_REALTIME };
+// One way of libaom. `speed` is what it calls cpu-used; `screen`: it also tries palettes and copies
+// of blocks, as of pictures of screens.
+struct av1_preset {
+    const char *name;
+    enum av1_usage usage;
+    int speed, bits;  // 8 .. 12
+    bool screen;
+};
+extern const struct av1_preset av1_presets[AV1_PRESETS];
 
 // A sequence of pictures: samples[picture][component][height][width], each 0 .. AV1_TOP. One
 // component is grey, three are a luma and two chromas at full resolution.
 struct av1_shape {
     int width, height, components, pictures;
+    // [pictures], or NULL: how often the step of a picture's samples was halved against the others.
+    // Its quantiser is coarser by as much.
+    const unsigned char *halved;
 };
 
 // `quantiser` AV1_FINEST .. AV1_COARSEST: AV1_STEPS times what libaom calls so, of whose whole
 // numbers the pictures have the two nearest in turn. Below the finest libaom 3.6 makes blocks of
-// some pictures of 12 bits black or white. `speed` AV1_SLOW .. AV1_FAST: compared with
-// the slow one the usual takes less than half of the time for 6 % more bytes, the fast a sixth of
-// it for 18 %.
+// some pictures of 12 bits black or white.
 struct av1_effort {
-    int quantiser, speed;
+    int quantiser;
+    enum av1_preset_number preset;
 };
 struct av1_bytes {
     unsigned char *byte;  // [size], mem_free

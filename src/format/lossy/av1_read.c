@@ -5,6 +5,8 @@
 #include <errno.h>
 #include <string.h>
 
+enum { MOST_BITS = 12 };
+
 static void keep(const uint8_t *data, void *nobody)
 {
     (void)data, (void)nobody;
@@ -12,20 +14,43 @@ static void keep(const uint8_t *data, void *nobody)
 
 static bool fits(const Dav1dPicture *p, const struct av1_shape *shape)
 {
-    const enum Dav1dPixelLayout layout =
-        shape->components == 1 ? DAV1D_PIXEL_LAYOUT_I400 : DAV1D_PIXEL_LAYOUT_I444;
-    return p->p.w == shape->width && p->p.h == shape->height && p->p.bpc == AV1_BITS &&
-           p->p.layout == layout;
+    const bool grey =
+        p->p.layout == DAV1D_PIXEL_LAYOUT_I400 || p->p.layout == DAV1D_PIXEL_LAYOUT_I420;
+    return p->p.w == shape->width && p->p.h == shape->height &&
+           (shape->components == 1 ? grey : p->p.layout == DAV1D_PIXEL_LAYOUT_I444);
+}
+
+// A sample in 12 bits, to the nearest; `chroma` keeps its middle.
+static uint16_t widen(int sample, int bits, bool chroma)
+{
+    const int top = (1 << bits) - 1, from = chroma ? 1 << (bits - 1) : 0,
+              to = chroma ? AV1_MIDDLE : 0;
+    const int scaled = (sample - from) * AV1_TOP;
+    const int v = to + (scaled + (scaled < 0 ? -top : top) / 2) / top;
+    return (uint16_t)(v < 0 ? 0 : v > AV1_TOP ? AV1_TOP : v);
+}
+
+// table[1 << bits]: every sample in 12 bits.
+static void fill_table(uint16_t *table, int bits, bool chroma)
+{
+    for (int v = 0; v < 1 << bits; v++)
+        table[v] = widen(v, bits, chroma);
 }
 
 static void copy(uint16_t *samples, const Dav1dPicture *p, const struct av1_shape *shape)
 {
     const size_t width = (size_t)shape->width, height = (size_t)shape->height;
-    for (int c = 0; c < shape->components; c++)
-        for (size_t y = 0; y < height; y++)
-            memcpy(samples + ((size_t)c * height + y) * width,
-                   (const char *)p->data[c] + (ptrdiff_t)y * p->stride[c > 0],
-                   width * sizeof *samples);
+    uint16_t table[1 << MOST_BITS];
+    for (int c = 0; c < shape->components; c++) {
+        fill_table(table, p->p.bpc, c > 0);
+        for (size_t y = 0; y < height; y++, samples += width) {
+            const void *row = (const char *)p->data[c] + (ptrdiff_t)y * p->stride[c > 0];
+            const uint8_t *narrow = row;
+            const uint16_t *wide = row;
+            for (size_t x = 0; x < width; x++)
+                samples[x] = p->p.bpc > 8 ? table[wide[x]] : table[narrow[x]];
+        }
+    }
 }
 
 // The pictures that are ready, of which those of another sequence (samples NULL) are left out; 0

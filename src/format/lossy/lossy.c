@@ -7,6 +7,7 @@
 #include "core/math/scalar.h"
 #include "format/coder/coding.h"
 
+#include <math.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -44,9 +45,9 @@ static int padded(int side)
 static struct tile tile_in(const struct lossy_shape *shape, const struct relume_rect *at)
 {
     const int components = shape->colour ? 3 : 1;
-    return (struct tile){
-        at->left, at->top, at->width, at->height,
-        .video = {padded(at->width), padded(at->height), components, shape->planes / components}};
+    return (struct tile){at->left, at->top, at->width, at->height,
+                         .video = {padded(at->width), padded(at->height), components,
+                                   shape->planes / components, shape->halved}};
 }
 
 static struct tile tile_at(const struct tiles *t, int index)
@@ -392,10 +393,41 @@ static relume_status encode_all(struct lossy_words *out, struct encoding *e, int
     return status;
 }
 
-static struct lossy_shape shape_of(const relume_coder *coder, int width, int height)
+// Halvings of the step of each plane against the largest one; NULL: none, or memory is short, which
+// costs bytes alone.
+static unsigned char *halvings_of(const struct relume_coefficients_info *info)
 {
-    return (struct lossy_shape){width, height, relume_coder_info(coder)->planes,
-                                lossy_in_colour(coder), lossy_order(coder)};
+    unsigned char *halved =
+        lossy_in_colour(info->coder) ? NULL : mem_array((size_t)info->planes, sizeof *halved);
+    float most = 0.0f;
+    bool any = false;
+    for (int p = 0; p < info->planes; p++)
+        most = fmaxf(most, info->scale[p]);
+    for (int p = 0; halved && p < info->planes; p++) {
+        halved[p] = (unsigned char)lrintf(log2f(most / info->scale[p]));
+        any |= halved[p] > 0;
+    }
+    if (!any) {
+        mem_free(halved);
+        halved = NULL;
+    }
+    return halved;
+}
+
+static struct lossy_shape shape_of(const struct relume_coefficients_info *info)
+{
+    return (struct lossy_shape){info->width,
+                                info->height,
+                                info->planes,
+                                lossy_in_colour(info->coder),
+                                lossy_order(info->coder),
+                                halvings_of(info)};
+}
+
+static void shape_destroy(const struct lossy_shape *shape)
+{
+    mem_free((int *)(uintptr_t)shape->order);
+    mem_free((unsigned char *)(uintptr_t)shape->halved);
 }
 
 struct lossy_cut lossy_cut_of(const relume_coder *coder, int width, int height, int views)
@@ -422,13 +454,13 @@ relume_status lossy_encode_tiles(struct av1_bytes *sequence, relume_coefficients
                                  int threads, const struct relume_log *log)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(from[0]);
-    const struct lossy_shape shape = shape_of(info->coder, info->width, info->height);
+    const struct lossy_shape shape = shape_of(info);
     struct encoding e = encoding_of(&shape, from, views, effort, log);
     e.first = first;
     e.end = end;
     e.bytes = sequence;
     const relume_status status = encode_tiles(&e, threads);
-    mem_free((int *)(uintptr_t)shape.order);
+    shape_destroy(&shape);
     return status;
 }
 
@@ -437,10 +469,10 @@ relume_status lossy_encode(struct lossy_words *out, relume_coefficients *const *
                            const struct relume_log *log)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(from[0]);
-    const struct lossy_shape shape = shape_of(info->coder, info->width, info->height);
+    const struct lossy_shape shape = shape_of(info);
     struct encoding e = encoding_of(&shape, from, views, effort, log);
     const relume_status status = encode_all(out, &e, threads);
-    mem_free((int *)(uintptr_t)shape.order);
+    shape_destroy(&shape);
     return status;
 }
 
@@ -645,9 +677,7 @@ relume_status lossy_try(uint16_t *before, uint16_t *after, size_t *bytes, relume
                         const struct relume_log *log)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(from);
-    int *order = lossy_order(info->coder);
-    const struct lossy_shape shape = {info->width, info->height, info->planes,
-                                      lossy_in_colour(info->coder), order};
+    const struct lossy_shape shape = shape_of(info);
     const struct tile t = tile_in(&shape, at);
     struct av1_bytes sequence = {0};
     uint16_t *samples = tile_samples(&t);
@@ -667,6 +697,6 @@ relume_status lossy_try(uint16_t *before, uint16_t *after, size_t *bytes, relume
     *bytes = sequence.size;
     mem_free(sequence.byte);
     mem_free(samples);
-    mem_free(order);
+    shape_destroy(&shape);
     return status;
 }

@@ -18,7 +18,8 @@
 struct lossy_shape {
     int width, height, planes;
     bool colour;
-    const int *order;  // [planes], [planes / 3] in colour
+    const int *order;             // [planes], [planes / 3] in colour
+    const unsigned char *halved;  // [planes], or NULL: as in struct av1_shape
 };
 
 // Whether `planes` of a coder are in colour; and a good order for its pictures where it matters,

@@ -108,7 +108,7 @@ relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
 {
     const struct channel *channel = channels[kind];
     const size_t n = (size_t)model->width * (size_t)model->height;
-    const struct lossy_shape shape = {model->width, model->height, LEARNT, false, NULL};
+    const struct lossy_shape shape = {model->width, model->height, LEARNT, false, NULL, NULL};
     uint16_t *codes = mem_array(n * LEARNT, sizeof *codes);
     *out = (struct lossy_words){0};
     relume_status status = codes ? find_steps(steps, model, channel) : RELUME_ENOMEM;
@@ -120,7 +120,7 @@ relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
                 isinf(value) ? TOP : (uint16_t)rintf((x - steps->offset[c]) / steps->scale[c]);
         }
     for (int q = FINEST; !status && q <= COARSEST; q += COARSER) {
-        const struct av1_effort effort = {q * AV1_STEPS, AV1_USUAL};
+        const struct av1_effort effort = {q * AV1_STEPS, AV1_GOOD_3_SCREEN};
         mem_free(out->word);
         status = lossy_encode_codes(out, codes, &shape, &effort, threads, log);
         if (4.0 * (double)out->count <= bytes)
@@ -135,7 +135,7 @@ relume_status learnt_decode(struct relume_image *model, const struct lossy_words
 {
     const struct channel *channel = channels[kind];
     const size_t n = (size_t)model->width * (size_t)model->height;
-    const struct lossy_shape shape = {model->width, model->height, LEARNT, false, NULL};
+    const struct lossy_shape shape = {model->width, model->height, LEARNT, false, NULL, NULL};
     const struct relume_rect all = {0, 0, model->width, model->height};
     uint16_t *codes = mem_array(n * LEARNT, sizeof *codes);
     if (!codes)

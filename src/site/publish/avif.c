@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BOXES = 512, LEVEL = 31, SPEED = AV1_FAST };
+enum { BOXES = 512, LEVEL = 31 };
 enum { TRIAL_SIDE = 96 };
 enum { LEAST = AV1_FINEST / AV1_STEPS, MOST = AV1_COARSEST / AV1_STEPS };
 
@@ -210,8 +210,8 @@ static double error_of(const struct sheet_picture *w, const uint8_t *codes)
 static relume_status encode(struct sheet_picture *w, int step, struct av1_bytes *bytes,
                             uint8_t *codes)
 {
-    const struct av1_shape shape = {w->width, w->height, SHEET_PLANES, 1};
-    const struct av1_effort effort = {step * AV1_STEPS, SPEED};
+    const struct av1_shape shape = {w->width, w->height, SHEET_PLANES, 1, NULL};
+    const struct av1_effort effort = {step * AV1_STEPS, AV1_GOOD_6_SCREEN};
     const uint16_t *samples = w->samples;
     mem_free(bytes->byte);
     *bytes = (struct av1_bytes){0};

@@ -578,7 +578,7 @@ static relume_status find_strange(struct judge *j, double usual_similarity, bool
     for (int i = 0; !status && i < j->n && j->n > LEFT * j->all;) {
         struct shot *shot = &s->shot[j->shot[i]];
         const double left = left_under(j, i, j->direction[i]);
-        const double most = (unlike ? OTHER : UNEXPLAINED) * leeway(j, i);
+        const double most = unlike ? OTHER * leeway(j, i) : UNEXPLAINED;
         const bool may_be = left > most && shot->black <= DARK;
         if (may_be && unlike)
             shot->similarity = acquire_similarity(s, j->shot[i]);

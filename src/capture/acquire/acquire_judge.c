@@ -569,6 +569,16 @@ static bool is_foreign(struct judge *j, int i)
     return true;
 }
 
+// Returns whether gloss, low light or far neighbours explain a photograph that seems to be of
+// another scene. `unlike`: its edges differ from most.
+static bool is_excused(struct judge *j, int i, bool unlike)
+{
+    if (!unlike || j->direction[i].z < GRAZING)
+        return !is_foreign(j, i);
+    compare_blocks(j, i, faintest(j));
+    return flashes(j, i);
+}
+
 // Names photographs of another scene, or turned ones. `unlike` takes only photographs whose edges
 // are unlike most photographs' as well.
 static relume_status find_strange(struct judge *j, double usual_similarity, bool unlike)
@@ -583,7 +593,7 @@ static relume_status find_strange(struct judge *j, double usual_similarity, bool
         if (may_be && unlike)
             shot->similarity = acquire_similarity(s, j->shot[i]);
         if (!may_be || (unlike && !((double)shot->similarity < UNLIKE * usual_similarity)) ||
-            !is_foreign(j, i)) {
+            is_excused(j, i, unlike)) {
             i++;
             continue;
         }

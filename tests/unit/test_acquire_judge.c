@@ -145,6 +145,43 @@ static void another_scene(void **state)
     expect(&p, 1, "p08.jpg: seems to show another scene");
 }
 
+// The scene's own edges under a light that fits badly.
+static void the_same_edges(void **state)
+{
+    (void)state;
+    struct photographs p;
+    take(&p);
+    p.shot[8].similarity = 0.1f;
+    for (int k = 0; k < PIXELS; k++)
+        for (int c = 0; c < 3; c++)
+            p.shot[8].small.data[3 * k + c] *= (float)exp2(4.0 * (k % WIDTH) / WIDTH - 3.0);
+    expect(&p, 1, "p08.jpg does not fit its light: parts of it");
+}
+
+// Gloss that flashes under the light nearest to the camera.
+static void a_flash(void **state)
+{
+    (void)state;
+    struct photographs p;
+    take(&p);
+    for (int k = 0; k < PIXELS; k++)
+        for (int c = 0; c < 3; c++)
+            p.shot[SHOTS - 1].small.data[3 * k + c] +=
+                (float)(0.4 + 0.4 * sin(k % WIDTH * 0.3) * cos(k / WIDTH * 0.25));
+    expect(&p, 0, "");
+}
+
+// Two exchanged photographs that a ball has named.
+static void a_stray(void **state)
+{
+    (void)state;
+    struct photographs p;
+    take(&p);
+    exchange(&p, 4, 15);
+    p.shot[4].stray = p.shot[15].stray = true;
+    expect(&p, 0, "");
+}
+
 static void a_blurred_one(void **state)
 {
     (void)state;
@@ -174,6 +211,9 @@ int main(void)
         cmocka_unit_test(two_lights),
         cmocka_unit_test(another_order),
         cmocka_unit_test(another_scene),
+        cmocka_unit_test(the_same_edges),
+        cmocka_unit_test(a_flash),
+        cmocka_unit_test(a_stray),
         cmocka_unit_test(a_blurred_one),
         cmocka_unit_test(lifted_blacks),
     };

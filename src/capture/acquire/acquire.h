@@ -35,6 +35,7 @@ struct shot {
     double position_sigma;
     bool misfit;   // contradicts its light
     bool strange;  // of another scene
+    bool stray;    // a ball shows its light elsewhere
 };
 enum { SHOT_SMALL = 168 };
 

@@ -4,9 +4,9 @@
 // follows gloss and shadows as no law of reflection does, and compared in three ways. The light
 // that explains it best may be elsewhere: lines of the list are exchanged. In coarse blocks it may
 // be brighter or darker: another exposure, a lamp of other power. Some blocks may differ from most:
-// a shadow, stray light, another scene. Thresholds scale with the median difference in the same
-// capture, over the deviation that the distances of the lights predict. The worst photograph is
-// left out, since it spoils the prediction around it, and all are judged again.
+// a shadow, stray light. Another scene has edges of its own. Thresholds scale with the median
+// difference in the same capture, over the deviation that the distances of the lights predict. The
+// worst photograph is left out, since it spoils the prediction around it, and all are judged again.
 #include "capture/acquire/acquire.h"
 
 #include "capture/acquire/neighbours.h"
@@ -15,6 +15,7 @@
 #include "core/base/tree.h"
 #include "core/math/sort.h"
 
+#include <relume/capture/align.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,25 +29,42 @@ enum { FEW = 14 };
 static const double RAKING = 0.3;
 static const double GRAZING = 0.12;               // z: lights below show little but relief
 static const double EXPOSURE = 0.5, PARTS = 0.7;  // stops
-static const double UNUSUAL_EXPOSURE = 5.0, UNUSUAL_PARTS = 4.0;  // times the median
+static const double UNUSUAL_EXPOSURE = 3.5, UNUSUAL_PARTS = 4.0;  // times the median
 static const double LEAST_DETAIL = 2e-3;  // mean square of the logarithm's differences
 // Logarithm of the missing detail: at most 0.4 on sound real captures and 1.1 on a made one, 1.4
 // and more after a Gaussian blur of 1.5 pixels.
 static const double BLURRED = 0.6, UNUSUAL_BLUR = 6.0;  // ...; times the median
 static const double ELSEWHERE = 25.0;                   // degrees
 static const double NEIGHBOURS = 2.0;                   // times the angle to the nearest light
-static const double BETTER = 0.5;       // of the difference that is left under the light elsewhere
+static const double BETTER = 0.5;  // of the difference that is left under the light elsewhere
+// clearness(): at most 7.5 on sound real captures of 18 lights and more; 10 and more in nine of ten
+// exchanged photographs
+static const double CLEARLY = 8.0;
 static const double EVEN = 0.01;        // variation of an even picture, at most
 static const double UNEXPLAINED = 1.2;  // of a photograph's own variation: it is of something else
 static const double UNLIKE = 0.5;       // share of the usual similarity
 static const float DARK = 0.999f;       // share of the pixels
 static const double OTHER = 0.5;        // the same, of one with unlike edges
+// similarity to the most similar under the nearest lights: 0.25 and more in sound real photographs
+// unless almost black; 0.09 at most of another scene or a turned one, coins apart
+static const double FOREIGN = 0.15;
+enum { NEAREST = 5 };
+static const double FRONTAL = 0.9;  // z: light within 25 degrees of the camera flashes from gloss
+// stops in the mean of the blocks: 0.24 and more in a flash, below 0 in a person's shadow
+static const double FLASH = 0.1, FLASH_LEFT = 0.3;  // ...; share that no exposure explains
 
 // Predicts what a light shows by all photographs together.
 struct lit {
     double *weight;   // [n]
     double *product;  // [n], of the photographs with the prediction
     double square;    // of the prediction
+};
+
+struct explanation {
+    double left, best;  // under its own light, and under the best one
+    double angle;       // between both, degrees
+    double apart;       // from its own light to the nearest one, degrees
+    int nearest;        // of the photographs, to the best one
 };
 
 struct judge {
@@ -60,10 +78,11 @@ struct judge {
     int all;
     size_t pixels;
     struct neighbours set;
-    double *weight;                          // [n]
-    struct lit *lit;                         // [GRID + n]: lights that may explain a photograph
-    double *lit_values;                      // of these
-    double *exposure, *parts, *sd, *sorted;  // [n]
+    double *weight;      // [n]
+    struct lit *lit;     // [GRID + n]: lights that may explain a photograph
+    double *lit_values;  // of these
+    double *exposure, *parts, *brighter, *sd, *sorted;  // [n]
+    struct explanation *explanation;                    // [n]
 };
 
 // ---------------------------------------------------------------- values
@@ -139,14 +158,18 @@ static relume_status create(struct judge *j)
     j->lit_values = mem_array((GRID + n) * n, 2 * sizeof *j->lit_values);
     j->exposure = mem_array(n, sizeof *j->exposure);
     j->parts = mem_array(n, sizeof *j->parts);
+    j->brighter = mem_array(n, sizeof *j->brighter);
     j->sd = mem_array(n, sizeof *j->sd);
     j->sorted = mem_array(n, sizeof *j->sorted);
+    j->explanation = mem_array(n, sizeof *j->explanation);
     if (!j->shot || !j->direction || !j->block || !j->gram || !j->sum || !j->weight || !j->lit ||
-        !j->lit_values || !j->exposure || !j->parts || !j->sd || !j->sorted)
+        !j->lit_values || !j->exposure || !j->parts || !j->brighter || !j->sd || !j->sorted ||
+        !j->explanation)
         return RELUME_ENOMEM;
     for (int i = 0; i < s->shots; i++) {
         const vec3 d = direction_of(s, i);
-        if (d.z < 0.0)  // light from behind shows rims, which change from light to light
+        // light from behind shows rims, which change from light to light; a ball has named strays
+        if (d.z < 0.0 || s->shot[i].stray)
             continue;
         j->shot[j->n] = i;
         j->direction[j->n] = d;
@@ -171,8 +194,10 @@ static void destroy(struct judge *j)
     mem_free(j->lit_values);
     mem_free(j->exposure);
     mem_free(j->parts);
+    mem_free(j->brighter);
     mem_free(j->sd);
     mem_free(j->sorted);
+    mem_free(j->explanation);
 }
 
 static relume_status leave_out(struct judge *j, int k)
@@ -191,6 +216,12 @@ static double median(struct judge *j, const double *v)
     memcpy(j->sorted, v, (size_t)j->n * sizeof *v);
     sort_doubles(j->sorted, (size_t)j->n);
     return j->sorted[j->n / 2];
+}
+
+// Brightness and shadows change faster, the lower a light stands: a factor of what may be missed.
+static double leeway(const struct judge *j, int i)
+{
+    return (1.0 + RAKING / fmax(j->direction[i].z, 0.1)) / (1.0 + RAKING);
 }
 
 // ---------------------------------------------------------------- pixel by pixel
@@ -263,13 +294,6 @@ static vec3 grid_direction(int k)
     const double phi = k * (M_PI * (3.0 - sqrt(5.0)));
     return vec3_of(r * cos(phi), r * sin(phi), z);
 }
-
-struct explanation {
-    double left, best;  // under its own light, and under the best one
-    double angle;       // between both, degrees
-    double apart;       // from its own light to the nearest one, degrees
-    int nearest;        // of the photographs, to the best one
-};
 
 static vec3 lit_direction(const struct judge *j, int k)
 {
@@ -357,28 +381,51 @@ static relume_status name_elsewhere(struct judge *j, int i, const struct explana
         s->shot[j->shot[i]].path, e->angle, path_name(s->shot[j->shot[e->nearest]].path));
 }
 
+// Returns how clearly another light explains a photograph. The difference under its own light is
+// taken relative to the usual one of such lights, and over the share that the other light leaves.
+static double clearness(const struct judge *j, int i, double usual)
+{
+    const struct explanation *e = &j->explanation[i];
+    return j->parts[i] / usual * e->left / fmax(e->best, 1e-12);
+}
+
+// Returns the photograph that another light explains far better than its own, the clearest of them,
+// or -1.
+static int find_exchanged(struct judge *j, double *left)
+{
+    int found = -1;
+    double clearest = 1.0 / BETTER;
+    light_all(j);
+    for (int i = 0; i < j->n; i++) {
+        const double sd = neighbours_weights(&j->set, i, j->direction[i], j->weight) * leeway(j, i);
+        j->explanation[i] = search(j, i, left);
+        j->parts[i] = j->explanation[i].left / (sd * sd);
+    }
+    const double usual = fmax(median(j, j->parts), 1e-12);
+    for (int i = 0; i < j->n; i++) {
+        const struct explanation *e = &j->explanation[i];
+        const double times = e->left / fmax(e->best, 1e-12);
+        if (j->direction[i].z > GRAZING && times > clearest &&
+            e->angle > fmax(ELSEWHERE, NEIGHBOURS * e->apart) && clearness(j, i, usual) > CLEARLY) {
+            clearest = times;
+            found = i;
+        }
+    }
+    return found;
+}
+
 // The photographs that another light explains far better, the clearest first.
 static relume_status find_elsewhere(struct judge *j)
 {
     double *left = mem_array(GRID + (size_t)j->n, sizeof *left);
     relume_status status = left ? RELUME_OK : RELUME_ENOMEM;
     for (int named = 0; !status && named < MOST_EXCHANGED && j->n > LEFT * j->all; named++) {
-        struct explanation clearest = {0};
-        int found = -1;
-        light_all(j);
-        for (int i = 0; i < j->n; i++) {
-            const struct explanation e = search(j, i, left);
-            if (e.angle > fmax(ELSEWHERE, NEIGHBOURS * e.apart) && e.best < BETTER * e.left &&
-                (found < 0 || e.best * clearest.left < clearest.best * e.left)) {
-                clearest = e;
-                found = i;
-            }
-        }
-        if (found < 0)
+        const int i = find_exchanged(j, left);
+        if (i < 0)
             break;
-        status = name_elsewhere(j, found, &clearest);
+        status = name_elsewhere(j, i, &j->explanation[i]);
         if (!status)
-            status = leave_out(j, found);
+            status = leave_out(j, i);
     }
     mem_free(left);
     return status;
@@ -395,18 +442,13 @@ static double faintest(struct judge *j)
     return 0.1 * sum + 1e-4;
 }
 
-// Brightness and shadows change faster, the lower a light stands: a factor of what may be missed.
-static double leeway(const struct judge *j, int i)
-{
-    return (1.0 + RAKING / fmax(j->direction[i].z, 0.1)) / (1.0 + RAKING);
-}
-
-// Stops by which a photograph is brighter than predicted, in the median block, and by which the
-// fifth of the blocks that differ most differ from that.
+// Stops by which a photograph is brighter than predicted, in the median block and in the mean, and
+// by which the fifth of the blocks that differ most differ from the median.
 static void compare_blocks(struct judge *j, int i, double faint)
 {
     double stops[BLOCKS], sorted[BLOCKS];
-    j->sd[i] = neighbours_weights(&j->set, i, j->direction[i], j->weight) * leeway(j, i);
+    j->brighter[i] = 0.0;
+    j->sd[i] = neighbours_weights(&j->set, i, j->direction[i], j->weight);
     for (int k = 0; k < BLOCKS; k++) {
         double sum = 0.0;
         for (int a = 0; a < j->n; a++)
@@ -414,12 +456,34 @@ static void compare_blocks(struct judge *j, int i, double faint)
         stops[k] = sorted[k] =
             2.0 * log2(((double)j->block[i][k] + faint) / (fmax(sum, 0.0) + faint));
     }
+    for (int k = 0; k < BLOCKS; k++)
+        j->brighter[i] += stops[k] / BLOCKS;
     sort_doubles(sorted, BLOCKS);
     j->exposure[i] = sorted[BLOCKS / 2];
     for (int k = 0; k < BLOCKS; k++)
         sorted[k] = fabs(stops[k] - j->exposure[i]);
     sort_doubles(sorted, BLOCKS);
     j->parts[i] = sorted[BLOCKS * 4 / 5];
+}
+
+// Returns the stops of exposure relative to the expected ones. The median of blocks is smooth over
+// the lights: it is missed by far less where they are near, so that the square of `sd` is expected.
+static double unusual_exposure(const struct judge *j, int i)
+{
+    return fabs(j->exposure[i]) / (j->sd[i] * j->sd[i] * leeway(j, i));
+}
+
+static double unusual_parts(const struct judge *j, int i)
+{
+    return j->parts[i] / (j->sd[i] * leeway(j, i));
+}
+
+// Returns whether gloss flashes under light near the camera, in this photograph only: it adds
+// light, in patterns that no exposure of the predicted ones has.
+static bool flashes(const struct judge *j, int i)
+{
+    return j->direction[i].z > FRONTAL && j->brighter[i] > FLASH &&
+           left_under(j, i, j->direction[i]) > FLASH_LEFT;
 }
 
 // Returns the photograph that differs most, in units of its threshold; -1 where all are below 1.
@@ -434,17 +498,16 @@ static int find_worst(struct judge *j, double *how_bad, bool *exposure)
     double *scaled = j->weight;  // not needed any more
     for (int k = 0; k < 2; k++) {
         for (int i = 0; i < j->n; i++)
-            scaled[i] = fabs(k ? j->parts[i] : j->exposure[i]) / j->sd[i];
+            scaled[i] = k ? unusual_parts(j, i) : unusual_exposure(j, i);
         usual[k] = median(j, scaled) + 1e-6;
     }
     for (int i = 0; i < j->n; i++) {
         if (j->direction[i].z < GRAZING)
             continue;
-        const double stops[2] = {fabs(j->exposure[i]), j->parts[i]};
-        const double bad[2] = {fmin(stops[0] / EXPOSURE / sqrt(leeway(j, i)),
-                                    stops[0] / j->sd[i] / usual[0] / UNUSUAL_EXPOSURE),
-                               fmin(stops[1] / PARTS / sqrt(leeway(j, i)),
-                                    stops[1] / j->sd[i] / usual[1] / UNUSUAL_PARTS)};
+        const double bad[2] = {fmin(fabs(j->exposure[i]) / EXPOSURE / sqrt(leeway(j, i)),
+                                    unusual_exposure(j, i) / usual[0] / UNUSUAL_EXPOSURE),
+                               fmin(j->parts[i] / PARTS / sqrt(leeway(j, i)),
+                                    unusual_parts(j, i) / usual[1] / UNUSUAL_PARTS)};
         for (int k = 0; k < 2; k++)
             if (bad[k] > *how_bad && !(k == 0 && j->s->p.refine_brightness)) {
                 *how_bad = bad[k];
@@ -466,8 +529,9 @@ static relume_status find_uneven(struct judge *j)
         if (i < 0)
             break;
         struct shot *shot = &s->shot[j->shot[i]];
-        shot->misfit = true;
-        if (shot->black <= DARK)  // that has been said
+        const bool sound = flashes(j, i);
+        shot->misfit = !sound;
+        if (!sound && shot->black <= DARK)  // that has been said
             status =
                 exposure
                     ? acquire_warn_alike(
@@ -488,8 +552,35 @@ static relume_status find_uneven(struct judge *j)
     return status;
 }
 
+// Returns whether a photograph's edges are unlike all those under the NEAREST lights, or missing.
+static bool is_foreign(struct judge *j, int i)
+{
+    const struct acquisition *s = j->s;
+    double *angle = j->exposure;  // not needed yet, or any more
+    for (int k = 0; k < j->n; k++)
+        angle[k] = k == i ? INFINITY : vec3_angle(j->direction[k], j->direction[i]);
+    memcpy(j->sorted, angle, (size_t)j->n * sizeof *angle);
+    sort_doubles(j->sorted, (size_t)j->n);
+    const double within = j->sorted[NEAREST - 1];
+    for (int k = 0; k < j->n; k++)
+        if (angle[k] <= within && relume_edge_correlation(&s->shot[j->shot[i]].small,
+                                                          &s->shot[j->shot[k]].small) > FOREIGN)
+            return false;
+    return true;
+}
+
+// Returns whether gloss, low light or far neighbours explain a photograph that seems to be of
+// another scene. `unlike`: its edges differ from most.
+static bool is_excused(struct judge *j, int i, bool unlike)
+{
+    if (!unlike || j->direction[i].z < GRAZING)
+        return !is_foreign(j, i);
+    compare_blocks(j, i, faintest(j));
+    return flashes(j, i);
+}
+
 // Names photographs of another scene, or turned ones. `unlike` takes only photographs whose edges
-// differ as well.
+// are unlike most photographs' as well.
 static relume_status find_strange(struct judge *j, double usual_similarity, bool unlike)
 {
     struct acquisition *s = j->s;
@@ -497,10 +588,12 @@ static relume_status find_strange(struct judge *j, double usual_similarity, bool
     for (int i = 0; !status && i < j->n && j->n > LEFT * j->all;) {
         struct shot *shot = &s->shot[j->shot[i]];
         const double left = left_under(j, i, j->direction[i]);
-        const bool is = left > (unlike ? OTHER : UNEXPLAINED) && shot->black <= DARK;
-        if (is && unlike)
+        const double most = unlike ? OTHER * leeway(j, i) : UNEXPLAINED;
+        const bool may_be = left > most && shot->black <= DARK;
+        if (may_be && unlike)
             shot->similarity = acquire_similarity(s, j->shot[i]);
-        if (!is || (unlike && !((double)shot->similarity < UNLIKE * usual_similarity))) {
+        if (!may_be || (unlike && !((double)shot->similarity < UNLIKE * usual_similarity)) ||
+            is_excused(j, i, unlike)) {
             i++;
             continue;
         }

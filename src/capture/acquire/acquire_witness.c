@@ -281,6 +281,7 @@ static relume_status name_strays(struct witness *w)
         char fits[512] = "";
         if (!(w->best_angle[i] > most))
             continue;
+        s->shot[i].misfit = s->shot[i].stray = true;
         const int k = w->best_partner[i];
         if (k >= 0 && k != i)
             snprintf(fits, sizeof fits, "; it shows the light that the list gives to %.400s",

@@ -382,7 +382,7 @@ static relume_status name_elsewhere(struct judge *j, int i, const struct explana
 }
 
 // Returns how clearly another light explains a photograph. The difference under its own light is
-// taken relative to the usual one of such lights, and over the share that the other light leaves.
+// divided by the usual difference of such lights, and by the share that the other light leaves.
 static double clearness(const struct judge *j, int i, double usual)
 {
     const struct explanation *e = &j->explanation[i];

@@ -11,8 +11,8 @@
 // What a step of the quantiser is worth, before there are two trials, in quality or in bytes.
 static const double USUAL_DB = 0.1, USUAL_BYTES = 0.15;
 
-// Groups that are tried first: of views that are alone three, else two, where there are more than
-// twice as many.
+// Groups that are tried first where there are more than twice as many: three of views that are
+// alone, two of larger groups.
 enum { MOST_ALONE = 3, MOST_GROUPS = 2, WORTH_TRYING = 2 };
 
 // The most samples that the usual effort codes by its better presets, which take some seconds.

@@ -50,8 +50,8 @@ extern const struct av1_preset av1_presets[AV1_PRESETS];
 // component is grey, three are a luma and two chromas at full resolution.
 struct av1_shape {
     int width, height, components, pictures;
-    // [pictures], or NULL: how often the step of a picture's samples was halved against the others.
-    // Its quantiser is coarser by as much.
+    // [pictures], or NULL: how often the step of a picture's samples was halved against the
+    // largest. Its quantiser is coarser by as much.
     const unsigned char *halved;
 };
 

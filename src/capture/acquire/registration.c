@@ -39,6 +39,7 @@ static const double SCATTER = 0.02;                // the least that positions h
 static const double DOUBTFUL = 4.0, CLEAR = 10.0;  // a step counts, is a move; in scatters
 static const double EXPLAINED = 0.6;               // share of the error without the shift
 static const double BETTER = 0.95;
+static const double FAR_BETTER = 1.2;  // correlation of a position far away against one near by
 
 int acquire_luma_side(int shots)
 {
@@ -213,7 +214,8 @@ static double climb(const struct relume_image *all, const struct relume_image *i
     return near[1][1];
 }
 
-// Where `e` lies on a pair of pictures; returns the correlation there.
+// Where `e` lies on a pair of pictures; returns the correlation there. Along stripes every position
+// is about as good: one far away has to be better by FAR_BETTER than the one near by.
 static double position_on(const struct edges *e, const struct relume_image *fine,
                           const struct relume_image *coarse, double found[2])
 {
@@ -231,17 +233,17 @@ static double position_on(const struct edges *e, const struct relume_image *fine
         }
     best = -2.0;
     int top[3][2];  // climbs from one position end at one
-    for (int k = 0; k < 3; k++) {
+    for (int k = 2; k >= 0; k--) {
         double at[2];
         memcpy(top[k], start[k], sizeof top[k]);
         bool again = false;
-        for (int j = 0; j < k; j++)
+        for (int j = k + 1; j < 3; j++)
             again |= !memcmp(start[k], start[j], sizeof start[k]) ||
                      !memcmp(start[k], top[j], sizeof start[k]);
         if (again)
             continue;
         const double like = climb(fine, &e->fine, top[k], at);
-        if (like > best) {
+        if (like > (k < 2 && best > 0.0 ? FAR_BETTER * best : best)) {
             best = like;
             memcpy(found, at, sizeof at);
         }

@@ -1225,6 +1225,8 @@ struct unpacking {
     exr_decode_pipeline_t exr;  // first: the core hands back a pointer to it
     exr_result_t (*decompress)(exr_decode_pipeline_t *pipeline);
     piz_decoder *piz;
+    const struct piz_conversion *to;  // or NULL
+    bool converted;                   // the present block
 };
 
 static void end_unpacking(const exr_file *file, struct unpacking *u)
@@ -1247,23 +1249,25 @@ static int bytes_of_all(const exr_decode_pipeline_t *p)
 // By our own code, or by the library what that does not know.
 static exr_result_t decompress(exr_decode_pipeline_t *p)
 {
-    const struct unpacking *u = (const struct unpacking *)p;
+    struct unpacking *u = (struct unpacking *)p;
     const exr_coding_channel_info_t *c = p->channels;
     const int bytes = bytes_of_all(p);
     const uint64_t samples =
         bytes ? (uint64_t)c->width * (uint64_t)c->height * (uint64_t)p->channel_count : 0;
-    if (u->piz && samples && p->chunk.packed_size < p->chunk.unpacked_size &&
-        samples * (uint64_t)bytes == p->chunk.unpacked_size && p->unpacked_buffer &&
-        piz_decompress(u->piz, p->unpacked_buffer, p->packed_buffer, p->chunk.packed_size, c->width,
-                       c->height, p->channel_count, bytes / 2))
-        return EXR_ERR_SUCCESS;
-    return u->decompress(p);
+    const struct piz_conversion *to = u->to && u->to->bytes <= 2 ? u->to : NULL;
+    if (!u->piz || !samples || p->chunk.packed_size >= p->chunk.unpacked_size ||
+        samples * (uint64_t)bytes != p->chunk.unpacked_size || !p->unpacked_buffer ||
+        !piz_decompress(u->piz, p->unpacked_buffer, p->packed_buffer, p->chunk.packed_size,
+                        c->width, c->height, p->channel_count, bytes / 2, to))
+        return u->decompress(p);
+    u->converted = to != NULL;
+    return EXR_ERR_SUCCESS;
 }
 
 // A block, decoded.
 struct block {
     struct relume_rect at;
-    const void *samples;  // the pipeline's
+    void *samples;  // the pipeline's
 };
 
 // Hands the decompressed rows on as they are. The core leaves a block unset that has no bytes, and
@@ -1271,8 +1275,7 @@ struct block {
 static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
 {
     struct block *b = pipeline->decoding_user_data;
-    const void *samples =
-        pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
+    void *samples = pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
     const bool whole = pipeline->decompress_fn
                            ? pipeline->chunk.packed_size > 0
                            : pipeline->chunk.packed_size == pipeline->chunk.unpacked_size;
@@ -1309,6 +1312,7 @@ static relume_status decode(struct block *out, const struct layout *l, struct un
                             size_t item)
 {
     exr_decode_pipeline_t *pipeline = &unpacking->exr;
+    unpacking->converted = false;
     const exr_const_context_t exr = l->file->exr;
     exr_chunk_info_t chunk;
     errno = 0;
@@ -1328,6 +1332,17 @@ static relume_status decode(struct block *out, const struct layout *l, struct un
     return RELUME_OK;
 }
 
+// Codes are no larger than samples, whose place they take.
+static bool convert(const struct block *block, const struct unpacking *u)
+{
+    const exr_coding_channel_info_t *c = u->exr.channels;
+    const size_t samples =
+        (size_t)c->width * (size_t)c->height * (size_t)u->exr.channel_count;
+    return u->converted || !u->to ||
+           (bytes_of_all(&u->exr) >= (int)u->to->bytes &&
+            u->to->convert(u->to->context, block->samples, block->samples, samples));
+}
+
 struct reading {
     struct layout layout;
     void (*sink)(void *, const struct relume_rect *, const void *);
@@ -1335,6 +1350,7 @@ struct reading {
     size_t first, across;              // block; blocks of a row of them that are wanted
     struct unpacking *pipelines;  // one a worker
     atomic_int status;            // the last failure of any block
+    atomic_bool wrong;
 };
 
 static void read_block(void *context, size_t item, int worker)
@@ -1348,14 +1364,26 @@ static void read_block(void *context, size_t item, int worker)
                                         r->first + row * (size_t)r->layout.across + column);
     if (status)
         atomic_store(&r->status, (int)status);
-    else
+    else if (convert(&block, &r->pipelines[worker]))
         r->sink(r->context, &block.at, block.samples);
+    else
+        atomic_store(&r->wrong, true);
 }
 
 relume_status exr_read(const exr_file *file, int part, const struct relume_rect *rect, int threads,
                        void (*sink)(void *, const struct relume_rect *, const void *),
                        void *context, const struct relume_log *log)
 {
+    bool wrong;
+    return exr_read_codes(file, part, rect, threads, NULL, &wrong, sink, context, log);
+}
+
+relume_status exr_read_codes(const exr_file *file, int part, const struct relume_rect *rect,
+                             int threads, const struct piz_conversion *to, bool *wrong,
+                             void (*sink)(void *, const struct relume_rect *, const void *),
+                             void *context, const struct relume_log *log)
+{
+    *wrong = false;
     threads = thread_count(threads);
     struct reading r = {.sink = sink, .context = context};
     struct layout *l = &r.layout;
@@ -1367,6 +1395,8 @@ relume_status exr_read(const exr_file *file, int part, const struct relume_rect 
     r.pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines);
     if (!r.pipelines)
         return RELUME_ENOMEM;
+    for (int i = 0; i < threads; i++)
+        r.pipelines[i].to = to;
     r.first = (size_t)top * (size_t)l->across + (size_t)left;
     r.across = (size_t)((at.left + at.width - 1) / side + 1 - left);
     thread_for(threads, r.across * (size_t)((at.top + at.height - 1) / rows + 1 - top), read_block,
@@ -1375,6 +1405,7 @@ relume_status exr_read(const exr_file *file, int part, const struct relume_rect 
         end_unpacking(file, &r.pipelines[i]);
     mem_free(r.pipelines);
     const relume_status status = (relume_status)atomic_load(&r.status);
+    *wrong = atomic_load(&r.wrong);
     if (status == RELUME_EDAMAGED)
         return log_fail(log, RELUME_EDAMAGED,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,

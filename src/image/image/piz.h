@@ -23,9 +23,17 @@ typedef struct piz_decoder piz_decoder;
 piz_decoder *piz_decoder_create(void);
 void piz_decoder_destroy(piz_decoder **d);
 
+// What becomes of samples on their way: codes[n] of `bytes` each, 1 or 2. False: of these nothing.
+struct piz_conversion {
+    bool (*convert)(void *context, void *codes, const void *samples, size_t n);
+    void *context;
+    size_t bytes;
+};
+
 // Samples of `words` (1 or 2) words each, out[row][channel][x][words], of the `size` bytes of a
-// block. False: not one that this code knows, damaged or not; `out` may hold anything then.
-bool piz_decompress(piz_decoder *d, uint16_t *out, const uint8_t *packed, size_t size, int width,
-                    int rows, int channels, int words);
+// block; or with a conversion its codes, out[row][channel][x]. False: not one that this code knows,
+// damaged or not; `out` may hold anything then.
+bool piz_decompress(piz_decoder *d, void *out, const uint8_t *packed, size_t size, int width,
+                    int rows, int channels, int words, const struct piz_conversion *to);
 
 #endif

@@ -11,15 +11,18 @@
 #include <string.h>
 
 enum { VALUES = 1 << 16, SYMBOLS = VALUES + 1, BITMAP = VALUES / 8, HEAD = 20 };
-enum { INDEX = 12, AT_ONCE = 3, LOOKUPS = 4, MAX_LENGTH = 58, MAX_NUMBERS = 1 << 14 };
+enum { INDEX = 12, AT_ONCE = 4, LOOKUPS = 4, MAX_LENGTH = 58, MAX_NUMBERS = 1 << 14 };
 
-// The symbols that begin the bits of an index, stored together; count 0: a longer code or a run.
+// The symbols that begin the bits of an index, stored together.
 struct entry {
     uint16_t symbol[AT_ONCE];
-    uint8_t count, length;
 };
+// How many there are, 0: a longer code or a run; and the bits they take, which the next look-up
+// waits for: a small table of its own stays in the fastest cache.
+enum { COUNT_SHIFT = 4, LENGTH_MASK = (1 << COUNT_SHIFT) - 1 };
 
 struct piz_decoder {
+    uint8_t step[1 << INDEX];  // count << COUNT_SHIFT | length
     struct entry entry[1 << INDEX];
     uint16_t value[VALUES];           // of each number
     int values;                       // in use; the others are 0
@@ -29,7 +32,8 @@ struct piz_decoder {
     uint32_t before[MAX_LENGTH + 1];  // symbols of shorter codes
     int shortest;
     uint32_t of_runs;
-    uint16_t *plane;  // [capacity]
+    uint8_t code[2 * VALUES];  // of each number, converted; 0 of those that are not in use
+    uint16_t *plane;           // [capacity]
     size_t capacity;
 };
 
@@ -126,6 +130,7 @@ static bool take_values(piz_decoder *d, struct bytes *b)
     }
     for (int i = values; i < d->values; i++)
         d->value[i] = 0;
+    memset(d->code, 0, 2 * (size_t)d->values);
     d->values = values;
     return values <= MAX_NUMBERS;
 }
@@ -200,32 +205,33 @@ static void fill_single(piz_decoder *d)
 {
     for (int i = 0; i < 1 << INDEX; i++) {
         const uint64_t bits = (uint64_t)i << (64 - INDEX);
-        struct entry *e = &d->entry[i];
-        int length = INDEX + 1;
-        *e = (struct entry){.count = 0};
+        int length;
+        d->step[i] = 0;
         if (bits < d->first[INDEX])
             continue;
         const uint32_t symbol = find_symbol(d, bits, &length);
         if (length > INDEX || symbol == d->of_runs)
             continue;
-        *e = (struct entry){.symbol = {(uint16_t)symbol}, .count = 1, .length = (uint8_t)length};
+        d->entry[i].symbol[0] = (uint16_t)symbol;
+        d->step[i] = (uint8_t)(1 << COUNT_SHIFT | length);
     }
 }
 
 static void fill_entries(piz_decoder *d)
 {
-    struct entry single[1 << INDEX];
+    uint8_t single[1 << INDEX];
     fill_single(d);
-    memcpy(single, d->entry, sizeof single);
+    memcpy(single, d->step, sizeof single);
     for (int i = 0; i < 1 << INDEX; i++) {
-        struct entry *e = &d->entry[i];
-        while (e->count && e->count < AT_ONCE) {
-            const struct entry *next = &single[i << e->length & ((1 << INDEX) - 1)];
-            if (!next->count || e->length + next->length > INDEX)
+        int count = single[i] >> COUNT_SHIFT, length = single[i] & LENGTH_MASK;
+        while (count && count < AT_ONCE) {
+            const int next = i << length & ((1 << INDEX) - 1), more = single[next] & LENGTH_MASK;
+            if (!more || length + more > INDEX)
                 break;
-            e->symbol[e->count++] = next->symbol[0];
-            e->length = (uint8_t)(e->length + next->length);
+            d->entry[i].symbol[count++] = d->entry[next].symbol[0];
+            length += more;
         }
+        d->step[i] = (uint8_t)(count << COUNT_SHIFT | length);
     }
 }
 
@@ -272,13 +278,14 @@ static bool take_symbols(const piz_decoder *d, struct stream *s, uint16_t *to, s
     while (to < end) {
         const uint16_t *const begin = to;
         struct bits b = s->bits;
-        for (int last = 1; last && end - to >= ROOM && b.from.end - b.from.at >= 8;) {
+        for (int step = 1; step && end - to >= ROOM && b.from.end - b.from.at >= 8;) {
             refill(&b);
             for (int k = 0; k < LOOKUPS; k++) {
-                const struct entry *e = &d->entry[b.some >> (64 - INDEX)];
-                memcpy(to, e, sizeof *e);
-                to += last = e->count;
-                drop(&b, e->length);
+                const size_t index = b.some >> (64 - INDEX);
+                step = d->step[index];
+                memcpy(to, &d->entry[index], sizeof *d->entry);
+                to += step >> COUNT_SHIFT;
+                drop(&b, step & LENGTH_MASK);
             }
         }
         s->bits = b;
@@ -382,17 +389,85 @@ static void split(uint16_t *to, const uint16_t *from, size_t pixels)
     }
 }
 
-static void put_row(uint16_t *to, const piz_decoder *d, const uint16_t *plane, size_t width,
+static bool is_zero(const uint16_t *word, size_t n)
+{
+    unsigned all = 0;
+    for (size_t i = 0; i < n; i++)
+        all |= word[i];
+    return !all;
+}
+
+// Each of the values as a sample, converted, into d->code.
+static bool convert_values(piz_decoder *d, int words, const struct piz_conversion *to)
+{
+    enum { SOME = 512 };
+    uint32_t wide[SOME];
+    for (int at = 0; at < d->values; at += SOME) {
+        const int n = d->values - at < SOME ? d->values - at : SOME;
+        for (int i = 0; i < n; i++)
+            wide[i] = d->value[at + i];
+        const void *samples = words == 1 ? (const void *)(d->value + at) : wide;
+        if (!to->convert(to->context, d->code + (size_t)at * to->bytes, samples, (size_t)n))
+            return false;
+    }
+    return true;
+}
+
+// Where the samples of a block go.
+struct placing {
+    void *out;
+    size_t line, rows, channels, words;
+    const struct piz_conversion *to;
+};
+
+static void put_row(void *out, const piz_decoder *d, const uint16_t *plane, size_t n,
                     size_t step)
 {
-    for (size_t x = 0; x < width; x++)
+    uint16_t *to = out;
+    for (size_t x = 0; x < n; x++)
         to[x * step] = d->value[plane[x]];
 }
 
-bool piz_decompress(piz_decoder *d, uint16_t *out, const uint8_t *packed, size_t size, int width,
-                    int rows, int channels, int words)
+static void put_bytes(uint8_t *to, const piz_decoder *d, const uint16_t *plane, size_t n)
 {
-    const size_t line = (size_t)width, pixels = line * (size_t)rows, n = pixels * (size_t)words;
+    for (size_t x = 0; x < n; x++)
+        to[x] = d->code[plane[x]];
+}
+
+static void put_words(uint16_t *to, const piz_decoder *d, const uint16_t *plane, size_t n)
+{
+    const uint16_t *code = (const uint16_t *)(const void *)d->code;
+    for (size_t x = 0; x < n; x++)
+        to[x] = code[plane[x]];
+}
+
+// A channel's planes of words.
+static bool put_channel(const piz_decoder *d, const struct placing *p, const uint16_t *planes,
+                        size_t channel)
+{
+    const size_t pixels = p->line * p->rows;
+    if (p->to && p->words == 2 && !is_zero(planes + pixels, pixels))
+        return false;
+    for (size_t y = 0; y < p->rows; y++) {
+        const size_t at = (y * p->channels + channel) * p->line;
+        const uint16_t *from = planes + y * p->line;
+        for (size_t w = 0; !p->to && w < p->words; w++)
+            put_row((uint16_t *)p->out + at * p->words + w, d, from + w * pixels, p->line,
+                    p->words);
+        if (p->to && p->to->bytes == 1)
+            put_bytes((uint8_t *)p->out + at, d, from, p->line);
+        else if (p->to)
+            put_words((uint16_t *)p->out + at, d, from, p->line);
+    }
+    return true;
+}
+
+bool piz_decompress(piz_decoder *d, void *out, const uint8_t *packed, size_t size, int width,
+                    int rows, int channels, int words, const struct piz_conversion *to)
+{
+    const struct placing p = {
+        out, (size_t)width, (size_t)rows, (size_t)channels, (size_t)words, to};
+    const size_t pixels = p.line * p.rows, n = pixels * p.words;
     struct bytes b = {packed, packed + size};
     uint32_t bits;
     if (d->capacity < 2 * n) {
@@ -402,19 +477,19 @@ bool piz_decompress(piz_decoder *d, uint16_t *out, const uint8_t *packed, size_t
     }
     if (!d->plane || !take_values(d, &b) || !take_code(d, &b, &bits))
         return false;
+    if (to && !convert_values(d, words, to))
+        return false;
     struct stream s = {.bits.from = b};
-    for (size_t c = 0; c < (size_t)channels; c++) {
+    for (size_t c = 0; c < p.channels; c++) {
         uint16_t *const planes = d->plane + (words == 2 ? n : 0);
         if (!take_symbols(d, &s, d->plane, n))
             return false;
         if (words == 2)
             split(planes, d->plane, pixels);
-        for (size_t w = 0; w < (size_t)words; w++) {
-            restore(planes + w * pixels, line, (size_t)rows);
-            for (size_t y = 0; y < (size_t)rows; y++)
-                put_row(out + (y * (size_t)channels + c) * line * (size_t)words + w, d,
-                        planes + w * pixels + y * line, line, (size_t)words);
-        }
+        for (size_t w = 0; w < p.words; w++)
+            restore(planes + w * pixels, p.line, p.rows);
+        if (!put_channel(d, &p, planes, c))
+            return false;
     }
     return !s.run && 8 * (uint64_t)(s.bits.from.at - b.at) - (uint64_t)s.bits.count == bits;
 }

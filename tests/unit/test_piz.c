@@ -61,8 +61,8 @@ static void compress_by_library(struct reference *r, const uint16_t *words, int 
                      0);
     for (int c = 0; c < channels; c++) {
         snprintf(name, sizeof name, "c%02d", c);
-        assert_int_equal(
-            exr_add_channel(exr, part, name, type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1), 0);
+        assert_int_equal(exr_add_channel(exr, part, name, type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1),
+                         0);
     }
     assert_int_equal(exr_write_header(exr), 0);
     assert_int_equal(exr_write_scanline_chunk_info(exr, part, 0, &chunk), 0);

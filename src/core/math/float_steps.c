@@ -3,8 +3,8 @@
 
 static const uint32_t INFINITE = 0x7f800000u;
 
-// Bits of the least float whose step is at least `step`, from `from` on; those behind infinity where
-// there is none.
+// Bits of the least float, from `from` on, whose step is at least `step`; INFINITE + 1 if every
+// step is lower.
 static uint32_t find_least(int (*step_of)(float v), int step, uint32_t from)
 {
     uint32_t below = from, above = INFINITE + 1;

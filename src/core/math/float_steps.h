@@ -1,5 +1,5 @@
-// float_steps.h - whole numbers that rise with a float, looked up: the same as what they are made of
-// at every float, in a few cycles
+// float_steps.h - whole numbers that rise with a float, looked up: the same as what they are made
+// of at every float, in a few cycles
 #ifndef MATH_FLOAT_STEPS_H
 #define MATH_FLOAT_STEPS_H
 

@@ -27,7 +27,6 @@ static bool convert(void *context, void *codes, const void *samples, size_t n)
     return codes_from_samples(codes, l->pack->info.storage, samples, n);
 }
 
-
 static void load_block(void *context, const struct relume_rect *at, const void *codes)
 {
     const struct loading *l = context;

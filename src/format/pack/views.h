@@ -13,7 +13,7 @@ enum { RELUME_MOST_LEVELS = 16 };
 // Most bytes of notes that a file holds itself.
 enum { RELUME_PACK_MOST_NOTES = 1 << 26 };
 
-// Whether damaged tiles are shown as nothing, and told about.
+// True when damaged tiles are shown as nothing, and warned about.
 bool relume_pack_keeps_going(const relume_pack *pack);
 
 // From now on the views of an open file are that part of them: info, geometry, codes, depth, masks

@@ -1332,12 +1332,11 @@ static relume_status decode(struct block *out, const struct layout *l, struct un
     return RELUME_OK;
 }
 
-// Codes are no larger than samples, whose place they take.
+// Codes are no larger than samples, over which they are written.
 static bool convert(const struct block *block, const struct unpacking *u)
 {
     const exr_coding_channel_info_t *c = u->exr.channels;
-    const size_t samples =
-        (size_t)c->width * (size_t)c->height * (size_t)u->exr.channel_count;
+    const size_t samples = (size_t)c->width * (size_t)c->height * (size_t)u->exr.channel_count;
     return u->converted || !u->to ||
            (bytes_of_all(&u->exr) >= (int)u->to->bytes &&
             u->to->convert(u->to->context, block->samples, block->samples, samples));
@@ -1347,7 +1346,7 @@ struct reading {
     struct layout layout;
     void (*sink)(void *, const struct relume_rect *, const void *);
     void *context;
-    size_t first, across;              // block; blocks of a row of them that are wanted
+    size_t first, across;         // block; blocks of a row of them that are wanted
     struct unpacking *pipelines;  // one a worker
     atomic_int status;            // the last failure of any block
     atomic_bool wrong;

@@ -133,7 +133,7 @@ relume_status exr_read(const exr_file *file, int part, const struct relume_rect 
                                     const void *samples),
                        void *context, const struct relume_log *log);
 // The same of samples that are converted before `sink` gets them: codes[row][channel][x]. `convert`
-// must not depend on a sample's place: where few values occur it is asked once for each. *wrong
+// depends on the sample alone: where few values occur it is called once for each. *wrong
 // where it refused some, which `sink` does not get.
 struct piz_conversion;
 relume_status exr_read_codes(const exr_file *file, int part, const struct relume_rect *rect,

@@ -476,8 +476,7 @@ static void quantise_row(void *context, size_t y, int worker)
         if (q->bytes == 2)
             wide[i] = (uint16_t)(as_is ? code_of(from[i], 65535.0f) : srgb_word(from[i]));
         else
-            narrow[i] =
-                (uint8_t)(as_is ? code_of(from[i], 255.0f) : float_step(&q->srgb, from[i]));
+            narrow[i] = (uint8_t)(as_is ? code_of(from[i], 255.0f) : float_step(&q->srgb, from[i]));
     }
 }
 

@@ -23,7 +23,7 @@ typedef struct piz_decoder piz_decoder;
 piz_decoder *piz_decoder_create(void);
 void piz_decoder_destroy(piz_decoder **d);
 
-// What becomes of samples on their way: codes[n] of `bytes` each, 1 or 2. False: of these nothing.
+// Makes codes[n] of `bytes` each, 1 or 2, of samples. False: some have no code.
 struct piz_conversion {
     bool (*convert)(void *context, void *codes, const void *samples, size_t n);
     void *context;

@@ -17,8 +17,8 @@ enum { INDEX = 12, AT_ONCE = 4, LOOKUPS = 4, MAX_LENGTH = 58, MAX_NUMBERS = 1 <<
 struct entry {
     uint16_t symbol[AT_ONCE];
 };
-// How many there are, 0: a longer code or a run; and the bits they take, which the next look-up
-// waits for: a small table of its own stays in the fastest cache.
+// The number of symbols, 0 for a longer code or a run, and the bits they take. The next look-up
+// waits for it, so it has a small table of its own, which stays in the fastest cache.
 enum { COUNT_SHIFT = 4, LENGTH_MASK = (1 << COUNT_SHIFT) - 1 };
 
 struct piz_decoder {
@@ -251,7 +251,7 @@ static uint16_t *put_run(struct stream *s, uint16_t *to, const uint16_t *end)
     return to;
 }
 
-// One symbol, or a run of the one before. NULL where there is none.
+// Takes one symbol, or a run of the one before. NULL when the bits have ended.
 static uint16_t *take_symbol(const piz_decoder *d, struct stream *s, uint16_t *to,
                              const uint16_t *end)
 {
@@ -370,8 +370,7 @@ static bool take_code(piz_decoder *d, struct bytes *b, uint32_t *bits)
         return false;
     b->end = b->at + size;
     if (!take_number(&first, b, 4) || !take_number(&last, b, 4) || !take_number(&ignored, b, 4) ||
-        !take_number(bits, b, 4) || !take_number(&ignored, b, 4) || first > last ||
-        last >= SYMBOLS)
+        !take_number(bits, b, 4) || !take_number(&ignored, b, 4) || first > last || last >= SYMBOLS)
         return false;
     d->of_runs = last;
     if (!take_lengths(d, b, first, last) || !number_codes(d, first, last))
@@ -413,15 +412,14 @@ static bool convert_values(piz_decoder *d, int words, const struct piz_conversio
     return true;
 }
 
-// Where the samples of a block go.
+// The layout of a block's samples.
 struct placing {
     void *out;
     size_t line, rows, channels, words;
     const struct piz_conversion *to;
 };
 
-static void put_row(void *out, const piz_decoder *d, const uint16_t *plane, size_t n,
-                    size_t step)
+static void put_row(void *out, const piz_decoder *d, const uint16_t *plane, size_t n, size_t step)
 {
     uint16_t *to = out;
     for (size_t x = 0; x < n; x++)
@@ -465,8 +463,8 @@ static bool put_channel(const piz_decoder *d, const struct placing *p, const uin
 bool piz_decompress(piz_decoder *d, void *out, const uint8_t *packed, size_t size, int width,
                     int rows, int channels, int words, const struct piz_conversion *to)
 {
-    const struct placing p = {
-        out, (size_t)width, (size_t)rows, (size_t)channels, (size_t)words, to};
+    const struct placing p = {out, (size_t)width, (size_t)rows, (size_t)channels, (size_t)words,
+                              to};
     const size_t pixels = p.line * p.rows, n = pixels * p.words;
     struct bytes b = {packed, packed + size};
     uint32_t bits;

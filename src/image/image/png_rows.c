@@ -1,8 +1,8 @@
 // png_rows.c - the rows of a PNG file, filtered and deflated on several threads
 //
 // Each row has the filter of the least sum of sizes, as the PNG specification proposes and libpng
-// does. Strips of rows are deflated each by itself, with what stands before them as dictionary,
-// and follow one another as one stream (M. Adler, pigz).
+// does. Strips of rows are deflated each by itself, with the rows above as dictionary, and follow
+// one another as one stream (M. Adler, pigz).
 #include "image/image/png_rows.h"
 
 #include "core/base/memory.h"
@@ -16,7 +16,7 @@ enum { HEAD = 2, FOOT = 4 };  // of the stream
 
 struct strips {
     const struct picture_array *array;
-    size_t row, pixel;  // bytes
+    size_t row, pixel;                // bytes
     int effort, rows, before, count;  // rows of a strip, and of its dictionary
     struct png_piece *piece;
     uLong *sum;  // Adler-32 of each strip
@@ -98,7 +98,7 @@ static void take_row(uint8_t *to, const struct strips *s, int y)
     }
 }
 
-// Rows `first` .. `end` to out[end - first][1 + row]; `work` has room for FILTERS + 2 rows and
+// Rows `first` .. `end` to out[end - first][1 + row]; `work` holds FILTERS + 2 rows and
 // pixels.
 static void filter_rows(uint8_t *out, uint8_t *work, const struct strips *s, int first, int end)
 {
@@ -133,8 +133,8 @@ static bool deflate_strip(struct png_piece *piece, const uint8_t *data, size_t b
     piece->data = mem_array(HEAD + room + FOOT, 1);
     z.next_out = piece->data + HEAD;
     z.avail_out = (uInt)room;
-    bool good = piece->data && (!known || !deflateSetDictionary(&z, data + before - known,
-                                                                (uInt)known));
+    bool good =
+        piece->data && (!known || !deflateSetDictionary(&z, data + before - known, (uInt)known));
     if (good)
         good = deflate(&z, last ? Z_FINISH : Z_SYNC_FLUSH) == (last ? Z_STREAM_END : Z_OK) &&
                !z.avail_in && z.avail_out;

@@ -2,7 +2,7 @@
 //
 // Codes of many planes take several times the memory of the picture, and none of them is needed
 // again where the renderer shows one picture. A band is whole blocks of the file, enough for every
-// thread: rows, or tiles of planes that are coded with loss, each of which is decoded as a whole.
+// thread: rows, or tiles of lossy planes, each of which is decoded as a whole.
 #include "core/base/log.h"
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
@@ -40,9 +40,8 @@ static void find_band(int size[2], const relume_renderer *r)
     const bool coded = is_coded(r);
     const int threads = thread_count(r->params.threads);
     const int side = coded ? info->tile : larger_of(info->tile, BLOCK_ROWS);
-    const int64_t pixel = info->books
-                              ? (int64_t)sizeof(uint16_t) * info->books
-                              : (int64_t)relume_storage_bytes(info->storage) * info->planes;
+    const int64_t pixel = info->books ? (int64_t)sizeof(uint16_t) * info->books
+                                      : (int64_t)relume_storage_bytes(info->storage) * info->planes;
     const int64_t block = pixel * side * (coded ? side : info->width);
     const int64_t enough = coded ? threads : BLOCKS_EACH * threads;
     const int64_t blocks = BAND_BYTES / block > enough ? BAND_BYTES / block : enough;

@@ -143,7 +143,7 @@ jpeglib:src/image/image/jpeg.c tests/unit/test_picture.c
 png:src/image/image/png.c
 aom/:src/format/lossy/av1_write.c tests/tools/preload/msan.c
 dav1d:src/format/lossy/av1_read.c tests/tools/preload/msan.c
-zlib:src/image/image/exr_sums.c src/format/lossy/lossy.c src/format/lossy/disparity.c src/shape/volume/unpack.c tests/unit/test_volume.c tests/fuzz/fuzz_volume.c
+zlib:src/image/image/exr_sums.c src/image/image/png_rows.c src/format/lossy/lossy.c src/format/lossy/disparity.c src/shape/volume/unpack.c tests/unit/test_png_rows.c tests/unit/test_volume.c tests/fuzz/fuzz_volume.c
 lcms2:src/image/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 mpi[.]h:src/cli/mpi/relume_mpi.c

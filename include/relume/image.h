@@ -64,7 +64,7 @@ struct relume_image_params {
     int channels;  // loading: 1, 3 or 4, converted to; default 3. Grey is spread; alpha is
                    // dropped but with 4, where it is 1 in pictures that have none
     bool half;     // saving EXR: half instead of float samples
-    int threads;   // saving EXR: worker threads; default: one
+    int threads;   // saving EXR and PNG: worker threads; default: one
     const struct relume_reader *reader;  // loading: read this in place of the file; `path` is only
                                          // a name, or NULL
     const struct relume_writer

@@ -27,9 +27,11 @@ relume_status check_bits(const struct develop_options *o, const char *path)
 }
 
 relume_status save_developed(const struct relume_image *frame, const struct develop_options *o,
-                             const char *path, const struct relume_log *log)
+                             const char *path, const struct args *args)
 {
     return relume_image_save(
         frame, path,
-        relume_image_params(.log = log, .profile = o->icc, .bits = o->bits == BITS_16 ? 16 : 8));
+        relume_image_params(.log = args->log, .profile = o->icc,
+                            .bits = o->bits == BITS_16 ? 16 : 8,
+                            .threads = args->threads > 0 ? args->threads : relume_cpu_count()));
 }

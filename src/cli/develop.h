@@ -33,6 +33,6 @@ relume_status check_bits(const struct develop_options *options, const char *path
 // Save it with the profile and the bits that are asked for.
 relume_status save_developed(const struct relume_image *frame,
                              const struct develop_options *options, const char *path,
-                             const struct relume_log *log);
+                             const struct args *args);
 
 #endif

@@ -1,5 +1,5 @@
 // test_piz.c - tests of src/image/image/piz.h: blocks of every kind become the bytes that OpenEXR's
-// own library makes of them
+// own library makes of them, and come back from these
 #include "test.h"
 
 #include "image/image/piz.h"
@@ -41,8 +41,9 @@ static int64_t nowhere(exr_const_context_t context, void *user, const void *buff
 
 // The library's block; `bytes` is the caller's to free.
 static void compress_by_library(struct reference *r, const uint16_t *words, int width, int rows,
-                                int channels)
+                                int channels, exr_pixel_type_t type)
 {
+    const int bytes = type == EXR_PIXEL_HALF ? 2 : 4;
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     const exr_attr_box2i_t window = {.max.x = width - 1, .max.y = rows - 1};
     const exr_attr_v2f_t centre = {.x = 0.0f};
@@ -60,9 +61,8 @@ static void compress_by_library(struct reference *r, const uint16_t *words, int 
                      0);
     for (int c = 0; c < channels; c++) {
         snprintf(name, sizeof name, "c%02d", c);
-        assert_int_equal(
-            exr_add_channel(exr, part, name, EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1),
-            0);
+        assert_int_equal(exr_add_channel(exr, part, name, type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1),
+                         0);
     }
     assert_int_equal(exr_write_header(exr), 0);
     assert_int_equal(exr_write_scanline_chunk_info(exr, part, 0, &chunk), 0);
@@ -70,9 +70,10 @@ static void compress_by_library(struct reference *r, const uint16_t *words, int 
     for (int c = 0; c < channels; c++) {
         exr_coding_channel_info_t *of = &r->exr.channels[c];
         of->encode_from_ptr = (const uint8_t *)&unused;
-        of->user_bytes_per_element = of->user_pixel_stride = 2;
-        of->user_data_type = EXR_PIXEL_HALF;
-        of->user_line_stride = 2 * width;
+        of->user_bytes_per_element = (int16_t)bytes;
+        of->user_pixel_stride = bytes;
+        of->user_data_type = (uint16_t)type;
+        of->user_line_stride = bytes * width;
     }
     assert_int_equal(exr_encoding_choose_default_routines(exr, part, &r->exr), 0);
     r->compress = r->exr.compress_fn;
@@ -151,7 +152,7 @@ static void compare_block(piz *p, kind *word, int width, int rows, int channels,
     struct reference r;
     for (size_t i = 0; i < n; i++)
         words[i] = word(i, seed);
-    compress_by_library(&r, words, width, rows, channels);
+    compress_by_library(&r, words, width, rows, channels, EXR_PIXEL_HALF);
     const size_t size = piz_compress(p, out, work, words, width, rows, channels);
     assert_true(size > 0 && size <= piz_bound(plain));
     if (size < plain || r.size != plain) {  // otherwise the library stores the samples as they are
@@ -198,11 +199,107 @@ static void test_too_many_values(void **state)
     free(out);
 }
 
+// ---------------------------------------------------------------- decoding
+
+static bool comes_back(piz_decoder *d, const uint16_t *words, const uint8_t *bytes, size_t size,
+                       int width, int rows, int channels, int each)
+{
+    const size_t plain = 2 * (size_t)width * (size_t)rows * (size_t)channels * (size_t)each;
+    uint8_t *copy = malloc(size + 1);  // nothing behind it is looked at
+    uint16_t *out = malloc(plain);
+    memcpy(copy, bytes, size);
+    const bool decoded = piz_decompress(d, out, copy, size, width, rows, channels, each, NULL);
+    const bool same = decoded && !memcmp(out, words, plain);
+    free(copy);
+    free(out);
+    return same;
+}
+
+static const int decoded_sizes[][3] = {{1, 1, 1},  {2, 2, 1},   {3, 5, 2},   {1, 32, 3},
+                                       {7, 32, 9}, {33, 17, 1}, {97, 31, 5}, {600, 32, 2}};
+enum { DECODED_SIZES = sizeof decoded_sizes / sizeof *decoded_sizes };
+
+static void test_halves_come_back(void **state)
+{
+    uint32_t seed = 11;
+    (void)state;
+    piz *p = piz_create();
+    piz_decoder *d = piz_decoder_create();
+    for (size_t s = 0; s < DECODED_SIZES; s++)
+        for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+            const int *size = decoded_sizes[s];
+            const size_t n = (size_t)(size[0] * size[1] * size[2]);
+            uint16_t *words = malloc(2 * n);
+            uint16_t *work = malloc(2 * n);
+            uint8_t *out = malloc(piz_bound(2 * n));
+            for (size_t i = 0; i < n; i++)
+                words[i] = kinds[k](i, &seed);
+            const size_t bytes = piz_compress(p, out, work, words, size[0], size[1], size[2]);
+            assert_true(comes_back(d, words, out, bytes, size[0], size[1], size[2], 1));
+            assert_false(comes_back(d, words, out, bytes - 1, size[0], size[1], size[2], 1));
+            free(words);
+            free(work);
+            free(out);
+        }
+    piz_decoder_destroy(&d);
+    piz_destroy(&p);
+}
+
+// Samples of 32 bits, which the library packs: whole numbers of 12 bits, and of all.
+static void test_words_come_back(void **state)
+{
+    uint32_t seed = 13;
+    struct reference r;
+    (void)state;
+    piz_decoder *d = piz_decoder_create();
+    for (size_t s = 0; s < DECODED_SIZES; s++)
+        for (int wide = 0; wide < 2; wide++) {
+            const int *size = decoded_sizes[s];
+            const size_t n = 2 * (size_t)(size[0] * size[1] * size[2]);
+            uint16_t *words = malloc(2 * n);
+            for (size_t i = 0; i < n; i++)
+                words[i] = i % 2 && !wide ? 0 : (uint16_t)(test_random(&seed) % (wide ? 500 : 40));
+            compress_by_library(&r, words, size[0], size[1], size[2], EXR_PIXEL_UINT);
+            if (r.size < 2 * n)
+                assert_true(comes_back(d, words, r.bytes, r.size, size[0], size[1], size[2], 2));
+            free(words);
+            free(r.bytes);
+        }
+    piz_decoder_destroy(&d);
+}
+
+// Damage is refused or gives other samples, and touches no memory beside them.
+static void test_damage(void **state)
+{
+    enum { WIDTH = 97, ROWS = 31, CHANNELS = 2, N = WIDTH * ROWS * CHANNELS };
+    static uint16_t words[N], work[N], out[N];
+    uint32_t seed = 17;
+    (void)state;
+    piz *p = piz_create();
+    piz_decoder *d = piz_decoder_create();
+    uint8_t *bytes = malloc(piz_bound(sizeof words));
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        for (int i = 0; i < 400; i++) {
+            for (size_t j = 0; j < N; j++)
+                words[j] = kinds[k](j, &seed);
+            const size_t size = piz_compress(p, bytes, work, words, WIDTH, ROWS, CHANNELS);
+            const size_t head = size < 64 || i % 2 ? size : 64;
+            bytes[test_random(&seed) % head] ^= (uint8_t)(1u << test_random(&seed) % 8);
+            (void)piz_decompress(d, out, bytes, size, WIDTH, ROWS, CHANNELS, 1, NULL);
+        }
+    free(bytes);
+    piz_decoder_destroy(&d);
+    piz_destroy(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_bytes),
         cmocka_unit_test(test_too_many_values),
+        cmocka_unit_test(test_halves_come_back),
+        cmocka_unit_test(test_words_come_back),
+        cmocka_unit_test(test_damage),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -133,7 +133,7 @@ static relume_status save_one(struct viewer_eye *e, const struct relume_image *f
     if (!status)
         status = develop(&out, &o->develop, o->output);
     if (!status)
-        status = save_developed(&out, &o->develop, o->output, o->args.log);
+        status = save_developed(&out, &o->develop, o->output, &o->args);
     relume_image_destroy(&out);
     return status;
 }

@@ -497,7 +497,7 @@ static relume_status draw_picture(relume_renderer *renderer, const relume_object
     if (!status && o->alpha)
         status = add_alpha(&frame, pack, camera);
     if (!status)
-        status = save_developed(&frame, &o->develop, path, o->args.log);
+        status = save_developed(&frame, &o->develop, path, &o->args);
     relume_image_destroy(&frame);
     return status;
 }
@@ -666,7 +666,7 @@ static relume_status draw_scene(const struct relight_options *o, const struct re
     if (!status)
         status = develop(&frame, &o->develop, o->output);
     if (!status)
-        status = save_developed(&frame, &o->develop, o->output, o->args.log);
+        status = save_developed(&frame, &o->develop, o->output, &o->args);
     relume_image_destroy(&frame);
     relume_tableau_destroy(&tableau);
     return status;

@@ -29,7 +29,7 @@ static relume_status run_tonemap(const struct args *args)
     if (!status)
         status = develop(&image, &o->develop, o->output);
     if (!status)
-        status = save_developed(&image, &o->develop, o->output, args->log);
+        status = save_developed(&image, &o->develop, o->output, args);
     relume_image_destroy(&image);
     return status;
 }

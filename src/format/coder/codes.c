@@ -49,11 +49,11 @@ enum exr_sample codes_sample(enum relume_storage storage)
     return kinds[storage].sample;
 }
 
-// The code of a number, which it is when nothing is wrong.
-static unsigned whole_code(float number, float top, bool *wrong)
+// The code of a number, which it is when nothing is wrong. Without branches compilers vectorise it.
+static inline int whole_code(float number, float top, unsigned *wrong)
 {
-    const float v = number >= 0.0f && number <= top ? number : 0.0f;
-    const unsigned code = (unsigned)(int)v;
+    const float positive = number >= 0.0f ? number : 0.0f;
+    const int code = (int)(positive <= top ? positive : 0.0f);
     *wrong |= (float)code != number;
     return code;
 }
@@ -64,7 +64,7 @@ bool codes_keep(void *codes, enum relume_storage storage, size_t first, const fl
     const float top = (float)relume_storage_top(storage);
     uint8_t *bytes = (uint8_t *)codes + first;
     uint16_t *words = (uint16_t *)codes + first;
-    bool wrong = false;
+    unsigned wrong = 0;
     switch (storage) {
     case RELUME_STORE_8:
         for (size_t i = 0; i < n; i++)

@@ -84,5 +84,13 @@ relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, 
 // such sequence are RELUME_EDAMAGED. RELUME_ENOMEM.
 relume_status av1_decode(uint16_t *samples, const struct av1_shape *shape,
                          const struct av1_bytes *bytes, const struct av1_bytes *first);
+// The same picture by picture: each is put into samples[component][height][width], then taken.
+struct av1_pictures {
+    uint16_t *samples;
+    void (*take)(void *user, int picture);
+    void *user;
+};
+relume_status av1_decode_each(const struct av1_pictures *to, const struct av1_shape *shape,
+                              const struct av1_bytes *bytes, const struct av1_bytes *first);
 
 #endif

@@ -53,18 +53,19 @@ static void copy(uint16_t *samples, const Dav1dPicture *p, const struct av1_shap
     }
 }
 
-// The pictures that are ready, of which those of another sequence (samples NULL) are left out; 0
-// when more data is wanted, else the library's error.
-static int take_picture(uint16_t *samples, const struct av1_shape *shape, Dav1dContext *context,
-                        int *taken)
+// The pictures that are ready, of which those of another sequence (`to` NULL) are left out; 0 when
+// more data is wanted, else the library's error.
+static int take_picture(const struct av1_pictures *to, const struct av1_shape *shape,
+                        Dav1dContext *context, int *taken)
 {
-    const size_t size = (size_t)shape->components * (size_t)shape->width * (size_t)shape->height;
     int error;
     Dav1dPicture p = {0};
     while (!(error = dav1d_get_picture(context, &p))) {
         const bool right = *taken < shape->pictures && fits(&p, shape);
-        if (right && samples)
-            copy(samples + (size_t)*taken * size, &p, shape);
+        if (right && to) {
+            copy(to->samples, &p, shape);
+            to->take(to->user, *taken);
+        }
         dav1d_picture_unref(&p);
         if (!right)
             return DAV1D_ERR(EINVAL);
@@ -73,18 +74,17 @@ static int take_picture(uint16_t *samples, const struct av1_shape *shape, Dav1dC
     return error == DAV1D_ERR(EAGAIN) ? 0 : error;
 }
 
-static int send(uint16_t *samples, const struct av1_shape *shape, Dav1dContext *context, int *taken,
-                const unsigned char *byte, size_t size)
+static int send(const struct av1_pictures *to, const struct av1_shape *shape, Dav1dContext *context,
+                int *taken, const unsigned char *byte, size_t size)
 {
     Dav1dData data = {0};
     int error = size ? dav1d_data_wrap(&data, byte, size, keep, NULL) : DAV1D_ERR(EINVAL);
     while (!error && data.sz) {
         const int sent = dav1d_send_data(context, &data);
-        error =
-            sent && sent != DAV1D_ERR(EAGAIN) ? sent : take_picture(samples, shape, context, taken);
+        error = sent && sent != DAV1D_ERR(EAGAIN) ? sent : take_picture(to, shape, context, taken);
     }
     if (!error)
-        error = take_picture(samples, shape, context, taken);
+        error = take_picture(to, shape, context, taken);
     dav1d_data_unref(&data);
     return error;
 }
@@ -117,8 +117,9 @@ static size_t picture_end(const struct av1_bytes *b, size_t at)
 }
 
 // One picture of the group's first sequence and one of this in turn.
-static int send_both(uint16_t *samples, const struct av1_shape *shape, Dav1dContext *context,
-                     const struct av1_bytes *bytes, const struct av1_bytes *first, int *taken)
+static int send_both(const struct av1_pictures *to, const struct av1_shape *shape,
+                     Dav1dContext *context, const struct av1_bytes *bytes,
+                     const struct av1_bytes *first, int *taken)
 {
     size_t at = 0, at_first = 0;
     int error = 0, taken_first = 0;
@@ -127,15 +128,15 @@ static int send_both(uint16_t *samples, const struct av1_shape *shape, Dav1dCont
         error =
             send(NULL, shape, context, &taken_first, first->byte + at_first, end_first - at_first);
         if (!error)
-            error = send(samples, shape, context, taken, bytes->byte + at, end - at);
+            error = send(to, shape, context, taken, bytes->byte + at, end - at);
         at = end;
         at_first = end_first;
     }
     return error;
 }
 
-relume_status av1_decode(uint16_t *samples, const struct av1_shape *shape,
-                         const struct av1_bytes *bytes, const struct av1_bytes *first)
+relume_status av1_decode_each(const struct av1_pictures *to, const struct av1_shape *shape,
+                              const struct av1_bytes *bytes, const struct av1_bytes *first)
 {
     Dav1dSettings settings;
     Dav1dContext *context;
@@ -146,10 +147,31 @@ relume_status av1_decode(uint16_t *samples, const struct av1_shape *shape,
     settings.logger.callback = NULL;
     if (dav1d_open(&context, &settings))
         return RELUME_ENOMEM;
-    const int error = first ? send_both(samples, shape, context, bytes, first, &taken)
-                            : send(samples, shape, context, &taken, bytes->byte, bytes->size);
+    const int error = first ? send_both(to, shape, context, bytes, first, &taken)
+                            : send(to, shape, context, &taken, bytes->byte, bytes->size);
     dav1d_close(&context);
     if (error == DAV1D_ERR(ENOMEM))
         return RELUME_ENOMEM;
     return !error && taken == shape->pictures ? RELUME_OK : RELUME_EDAMAGED;
+}
+
+struct keeping {
+    struct av1_pictures to;
+    size_t size;  // of a picture
+};
+
+static void keep_picture(void *user, int number)
+{
+    struct keeping *k = user;
+    (void)number;
+    k->to.samples += k->size;
+}
+
+relume_status av1_decode(uint16_t *samples, const struct av1_shape *shape,
+                         const struct av1_bytes *bytes, const struct av1_bytes *first)
+{
+    struct keeping k = {.to = {samples, keep_picture, &k},
+                        .size = (size_t)shape->components * (size_t)shape->width *
+                                (size_t)shape->height};
+    return av1_decode_each(&k.to, shape, bytes, first);
 }

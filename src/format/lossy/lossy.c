@@ -580,22 +580,34 @@ relume_status lossy_needs(const struct lossy_shape *shape, const struct relume_r
     return status;
 }
 
-// What of a tile is in a rectangle to codes[planes][rect height][rect width].
-static void scatter(uint16_t *codes, const struct relume_rect *r, const struct lossy_shape *shape,
-                    const struct tile *t, const uint16_t *samples)
+// Copies the share of a rectangle in a picture of a tile to codes[planes][rect height][rect width].
+static void scatter_picture(uint16_t *codes, const struct relume_rect *r,
+                            const struct lossy_shape *shape, const struct tile *t, int picture,
+                            const uint16_t *samples)
 {
     const struct relume_rect seen = seen_of(r, t);
     const size_t width = (size_t)r->width, stride = (size_t)t->video.width;
     const size_t from = (size_t)(seen.top - t->y) * stride + (size_t)(seen.left - t->x);
     const size_t to = (size_t)(seen.top - r->top) * width + (size_t)(seen.left - r->left);
+    for (int c = 0; c < t->video.components; c++) {
+        uint16_t *plane = codes + plane_of(shape, picture, c) * width * (size_t)r->height;
+        for (size_t y = 0; y < (size_t)seen.height; y++)
+            memcpy(plane + to + y * width, samples + from + y * stride,
+                   (size_t)seen.width * sizeof *plane);
+        samples += stride * (size_t)t->video.height;
+    }
+}
+
+static size_t picture_size(const struct tile *t)
+{
+    return (size_t)t->video.components * (size_t)t->video.width * (size_t)t->video.height;
+}
+
+static void scatter(uint16_t *codes, const struct relume_rect *r, const struct lossy_shape *shape,
+                    const struct tile *t, const uint16_t *samples)
+{
     for (int p = 0; p < t->video.pictures; p++)
-        for (int c = 0; c < t->video.components; c++) {
-            uint16_t *plane = codes + plane_of(shape, p, c) * width * (size_t)r->height;
-            for (size_t y = 0; y < (size_t)seen.height; y++)
-                memcpy(plane + to + y * width, samples + from + y * stride,
-                       (size_t)seen.width * sizeof *plane);
-            samples += stride * (size_t)t->video.height;
-        }
+        scatter_picture(codes, r, shape, t, p, samples + (size_t)p * picture_size(t));
 }
 
 // The sequence of a tile, when its checksum agrees; the bytes are freed by the caller.
@@ -610,25 +622,49 @@ static relume_status tile_bytes(struct av1_bytes *out, const struct found *f, si
     return crc32(0, out->byte, (uInt)out->size) == head[1] ? RELUME_OK : RELUME_EDAMAGED;
 }
 
+// A tile whose pictures are put where they belong as they come.
+struct placing {
+    const struct decoding *d;
+    const struct tile *tile;
+    uint16_t *samples;  // of a picture
+};
+
+static void place_picture(void *user, int picture)
+{
+    const struct placing *p = user;
+    const struct tile *t = p->tile;
+    if (t->video.components == 3)
+        from_luma(p->samples, picture_size(t) / 3);
+    scatter_picture(p->d->codes, p->d->rect, &p->d->tiles.shape, t, picture, p->samples);
+}
+
+// Takes away what the pictures before the damaged one have put there.
+static void clear_tile(const struct placing *p)
+{
+    memset(p->samples, 0, picture_size(p->tile) * sizeof *p->samples);
+    for (int k = 0; k < p->tile->video.pictures; k++)
+        scatter_picture(p->d->codes, p->d->rect, &p->d->tiles.shape, p->tile, k, p->samples);
+}
+
 static void decode_tile(void *context, size_t item, int worker)
 {
     struct decoding *d = context;
     const struct tile t = tile_of_item(d, (int)item);
     const size_t tile = (size_t)(t.y / d->tiles.size * d->tiles.across + t.x / d->tiles.size);
     struct av1_bytes bytes = {0}, first = {0};
-    uint16_t *samples = tile_samples(&t);
-    relume_status status = samples ? tile_bytes(&bytes, &d->view, tile) : RELUME_ENOMEM;
+    struct placing placing = {d, &t, mem_array(picture_size(&t), sizeof(uint16_t))};
+    relume_status status = placing.samples ? tile_bytes(&bytes, &d->view, tile) : RELUME_ENOMEM;
     (void)worker;
     if (!status && d->anchor.word)
         status = tile_bytes(&first, &d->anchor, tile);
-    if (!status)
-        status = av1_decode(samples, &t.video, &bytes, d->anchor.word ? &first : NULL);
     if (!status) {
-        convert(samples, &t.video, from_luma);
-        scatter(d->codes, d->rect, &d->tiles.shape, &t, samples);
+        const struct av1_pictures to = {placing.samples, place_picture, &placing};
+        status = av1_decode_each(&to, &t.video, &bytes, d->anchor.word ? &first : NULL);
+        if (status)
+            clear_tile(&placing);
     }
     d->status[item] = status;
-    mem_free(samples);
+    mem_free(placing.samples);
     mem_free(bytes.byte);
     mem_free(first.byte);
 }

@@ -7,9 +7,9 @@
 #include "format/pack/format.h"
 #include "format/pack/reader.h"
 #include "format/pack/views.h"
+#include "image/image/piz.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -19,25 +19,28 @@ struct loading {
     char *data;  // [planes] of the rectangle
     int first, planes;
     struct relume_rect rect;
-    atomic_bool wrong;
 };
 
-static void load_block(void *context, const struct relume_rect *at, const void *samples)
+static bool convert(void *context, void *codes, const void *samples, size_t n)
 {
-    struct loading *l = context;
+    const struct loading *l = context;
+    return codes_from_samples(codes, l->pack->info.storage, samples, n);
+}
+
+static void load_block(void *context, const struct relume_rect *at, const void *codes)
+{
+    const struct loading *l = context;
     const enum relume_storage storage = l->pack->info.storage;
     const struct relume_coder_info *coder = relume_coder_info(l->pack->coder);
     const struct relume_rect *r = &l->rect, some = exr_overlap(at, r);
-    const size_t sample = exr_sample_bytes(codes_sample(storage)),
-                 code = relume_storage_bytes(storage);
+    const size_t code = relume_storage_bytes(storage);
     for (int y = some.top; y < some.top + some.height; y++)
         for (int c = 0; c < l->planes; c++) {
             const int plane = l->first < 0 ? c : format_plane(coder, l->first + c) - l->first;
-            const void *from = exr_samples(samples, at, &some, y, l->planes, c, sample);
+            const void *from = exr_samples(codes, at, &some, y, l->planes, c, code);
             const size_t row = (size_t)plane * (size_t)r->height + (size_t)(y - r->top);
             char *to = l->data + (row * (size_t)r->width + (size_t)(some.left - r->left)) * code;
-            if (!codes_from_samples(to, storage, from, (size_t)some.width))
-                atomic_store(&l->wrong, true);
+            memcpy(to, from, (size_t)some.width * code);
         }
 }
 
@@ -51,8 +54,11 @@ relume_status reader_load(relume_pack *p, int part, const struct relume_rect *re
         .planes = planes,
         .rect = *rect,
     };
-    const relume_status status = exr_read(p->file, part, rect, p->threads, load_block, &l, p->log);
-    if (!status && atomic_load(&l.wrong))
+    const struct piz_conversion to = {convert, &l, relume_storage_bytes(p->info.storage)};
+    bool wrong;
+    const relume_status status =
+        exr_read_codes(p->file, part, rect, p->threads, &to, &wrong, load_block, &l, p->log);
+    if (!status && wrong)
         return reader_bad(p, "stored codes", "finite codes of the stated type");
     return status;
 }

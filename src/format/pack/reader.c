@@ -93,6 +93,11 @@ void relume_pack_destroy(relume_pack **pack)
     mem_free(p);
 }
 
+bool relume_pack_keeps_going(const relume_pack *pack)
+{
+    return pack->keep_going;
+}
+
 const struct relume_pack_info *relume_pack_info(const relume_pack *pack)
 {
     return &pack->info;

@@ -13,6 +13,9 @@ enum { RELUME_MOST_LEVELS = 16 };
 // Most bytes of notes that a file holds itself.
 enum { RELUME_PACK_MOST_NOTES = 1 << 26 };
 
+// True when damaged tiles are shown as nothing, and warned about.
+bool relume_pack_keeps_going(const relume_pack *pack);
+
 // From now on the views of an open file are that part of them: info, geometry, codes, depth, masks
 // and models. Reduced levels are given up. Notes stay those on the whole. RELUME_EINVAL for a part
 // that does not lie within the views, RELUME_EUNFIT for panoramas and slabs around an object.

@@ -1220,10 +1220,54 @@ static relume_status read_packed(const exr_file *file, int part, exr_chunk_info_
                     exr_part_info(file, part).name, at.top, at.top + at.height - 1);
 }
 
+// The core's pipeline, and our own code beside its.
+struct unpacking {
+    exr_decode_pipeline_t exr;  // first: the core hands back a pointer to it
+    exr_result_t (*decompress)(exr_decode_pipeline_t *pipeline);
+    piz_decoder *piz;
+    const struct piz_conversion *to;  // or NULL
+    bool converted;                   // the present block
+};
+
+static void end_unpacking(const exr_file *file, struct unpacking *u)
+{
+    exr_decoding_destroy(file->exr, &u->exr);
+    piz_decoder_destroy(&u->piz);
+}
+
+// Bytes of a sample where all channels of a block are alike, 0 where they differ.
+static int bytes_of_all(const exr_decode_pipeline_t *p)
+{
+    const exr_coding_channel_info_t *c = p->channels;
+    bool alike = p->channel_count > 0;
+    for (int i = 1; i < p->channel_count; i++)
+        alike &= c[i].width == c->width && c[i].height == c->height &&
+                 c[i].bytes_per_element == c->bytes_per_element;
+    return alike ? c->bytes_per_element : 0;
+}
+
+// By our own code, or by the library what that does not know.
+static exr_result_t decompress(exr_decode_pipeline_t *p)
+{
+    struct unpacking *u = (struct unpacking *)p;
+    const exr_coding_channel_info_t *c = p->channels;
+    const int bytes = bytes_of_all(p);
+    const uint64_t samples =
+        bytes ? (uint64_t)c->width * (uint64_t)c->height * (uint64_t)p->channel_count : 0;
+    const struct piz_conversion *to = u->to && u->to->bytes <= 2 ? u->to : NULL;
+    if (!u->piz || !samples || p->chunk.packed_size >= p->chunk.unpacked_size ||
+        samples * (uint64_t)bytes != p->chunk.unpacked_size || !p->unpacked_buffer ||
+        !piz_decompress(u->piz, p->unpacked_buffer, p->packed_buffer, p->chunk.packed_size,
+                        c->width, c->height, p->channel_count, bytes / 2, to))
+        return u->decompress(p);
+    u->converted = to != NULL;
+    return EXR_ERR_SUCCESS;
+}
+
 // A block, decoded.
 struct block {
     struct relume_rect at;
-    const void *samples;  // the pipeline's
+    void *samples;  // the pipeline's
 };
 
 // Hands the decompressed rows on as they are. The core leaves a block unset that has no bytes, and
@@ -1231,8 +1275,7 @@ struct block {
 static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
 {
     struct block *b = pipeline->decoding_user_data;
-    const void *samples =
-        pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
+    void *samples = pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
     const bool whole = pipeline->decompress_fn
                            ? pipeline->chunk.packed_size > 0
                            : pipeline->chunk.packed_size == pipeline->chunk.unpacked_size;
@@ -1249,21 +1292,34 @@ static relume_status block_error(exr_result_t e)
     return e == EXR_ERR_OUT_OF_MEMORY && errno == ENOMEM ? RELUME_ENOMEM : RELUME_EDAMAGED;
 }
 
-// The block of number `item`. RELUME_EDAMAGED: truncated or damaged; RELUME_ENOMEM.
-static relume_status decode(struct block *out, const struct layout *l,
-                            exr_decode_pipeline_t *pipeline, size_t item)
+static exr_result_t begin_unpacking(struct unpacking *u, const struct layout *l,
+                                    const exr_chunk_info_t *chunk)
 {
+    exr_decode_pipeline_t *pipeline = &u->exr;
+    exr_result_t e = exr_decoding_initialize(l->file->exr, l->part, chunk, pipeline);
+    if (!e)
+        e = exr_decoding_choose_default_routines(l->file->exr, l->part, pipeline);
+    u->decompress = pipeline->decompress_fn;
+    if (!e && u->decompress && chunk->compression == EXR_COMPRESSION_PIZ) {
+        u->piz = piz_decoder_create();  // without it the library decodes
+        pipeline->decompress_fn = decompress;
+    }
+    return e;
+}
+
+// The block of number `item`. RELUME_EDAMAGED: truncated or damaged; RELUME_ENOMEM.
+static relume_status decode(struct block *out, const struct layout *l, struct unpacking *unpacking,
+                            size_t item)
+{
+    exr_decode_pipeline_t *pipeline = &unpacking->exr;
+    unpacking->converted = false;
     const exr_const_context_t exr = l->file->exr;
     exr_chunk_info_t chunk;
     errno = 0;
     exr_result_t e = find_chunk(&chunk, l, item);
-    if (!e && pipeline->channels) {
-        e = exr_decoding_update(exr, l->part, &chunk, pipeline);
-    } else if (!e) {
-        e = exr_decoding_initialize(exr, l->part, &chunk, pipeline);
-        if (!e)
-            e = exr_decoding_choose_default_routines(exr, l->part, pipeline);
-    }
+    if (!e)
+        e = pipeline->channels ? exr_decoding_update(exr, l->part, &chunk, pipeline)
+                               : begin_unpacking(unpacking, l, &chunk);
     pipeline->decoding_user_data = out;
     pipeline->unpack_and_convert_fn = deliver;
     if (!e)
@@ -1276,13 +1332,24 @@ static relume_status decode(struct block *out, const struct layout *l,
     return RELUME_OK;
 }
 
+// Codes are no larger than samples, over which they are written.
+static bool convert(const struct block *block, const struct unpacking *u)
+{
+    const exr_coding_channel_info_t *c = u->exr.channels;
+    const size_t samples = (size_t)c->width * (size_t)c->height * (size_t)u->exr.channel_count;
+    return u->converted || !u->to ||
+           (bytes_of_all(&u->exr) >= (int)u->to->bytes &&
+            u->to->convert(u->to->context, block->samples, block->samples, samples));
+}
+
 struct reading {
     struct layout layout;
     void (*sink)(void *, const struct relume_rect *, const void *);
     void *context;
-    size_t first, across;              // block; blocks of a row of them that are wanted
-    exr_decode_pipeline_t *pipelines;  // one a worker
-    atomic_int status;                 // the last failure of any block
+    size_t first, across;         // block; blocks of a row of them that are wanted
+    struct unpacking *pipelines;  // one a worker
+    atomic_int status;            // the last failure of any block
+    atomic_bool wrong;
 };
 
 static void read_block(void *context, size_t item, int worker)
@@ -1296,14 +1363,26 @@ static void read_block(void *context, size_t item, int worker)
                                         r->first + row * (size_t)r->layout.across + column);
     if (status)
         atomic_store(&r->status, (int)status);
-    else
+    else if (convert(&block, &r->pipelines[worker]))
         r->sink(r->context, &block.at, block.samples);
+    else
+        atomic_store(&r->wrong, true);
 }
 
 relume_status exr_read(const exr_file *file, int part, const struct relume_rect *rect, int threads,
                        void (*sink)(void *, const struct relume_rect *, const void *),
                        void *context, const struct relume_log *log)
 {
+    bool wrong;
+    return exr_read_codes(file, part, rect, threads, NULL, &wrong, sink, context, log);
+}
+
+relume_status exr_read_codes(const exr_file *file, int part, const struct relume_rect *rect,
+                             int threads, const struct piz_conversion *to, bool *wrong,
+                             void (*sink)(void *, const struct relume_rect *, const void *),
+                             void *context, const struct relume_log *log)
+{
+    *wrong = false;
     threads = thread_count(threads);
     struct reading r = {.sink = sink, .context = context};
     struct layout *l = &r.layout;
@@ -1315,14 +1394,17 @@ relume_status exr_read(const exr_file *file, int part, const struct relume_rect 
     r.pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines);
     if (!r.pipelines)
         return RELUME_ENOMEM;
+    for (int i = 0; i < threads; i++)
+        r.pipelines[i].to = to;
     r.first = (size_t)top * (size_t)l->across + (size_t)left;
     r.across = (size_t)((at.left + at.width - 1) / side + 1 - left);
     thread_for(threads, r.across * (size_t)((at.top + at.height - 1) / rows + 1 - top), read_block,
                &r);
     for (int i = 0; i < threads; i++)
-        exr_decoding_destroy(file->exr, &r.pipelines[i]);
+        end_unpacking(file, &r.pipelines[i]);
     mem_free(r.pipelines);
     const relume_status status = (relume_status)atomic_load(&r.status);
+    *wrong = atomic_load(&r.wrong);
     if (status == RELUME_EDAMAGED)
         return log_fail(log, RELUME_EDAMAGED,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
@@ -1332,8 +1414,8 @@ relume_status exr_read(const exr_file *file, int part, const struct relume_rect 
 
 struct finding {
     struct layout layout;
-    exr_decode_pipeline_t *pipelines;  // one a worker
-    bool *damaged;                     // of each block
+    struct unpacking *pipelines;  // one a worker
+    bool *damaged;                // of each block
     atomic_bool short_of_memory;
 };
 
@@ -1377,7 +1459,7 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
         report_runs(&f, found, context);
     }
     for (int i = 0; f.pipelines && i < threads; i++)
-        exr_decoding_destroy(file->exr, &f.pipelines[i]);
+        end_unpacking(file, &f.pipelines[i]);
     const bool done = f.pipelines && f.damaged && !atomic_load(&f.short_of_memory);
     mem_free(f.pipelines);
     mem_free(f.damaged);
@@ -1463,7 +1545,7 @@ relume_status exr_use_sums(exr_file *file, enum exr_sums_found *found)
 
 struct exr_blocks {
     struct layout layout;
-    exr_decode_pipeline_t pipeline;
+    struct unpacking pipeline;
     struct block block;  // the last one decoded
 };
 
@@ -1530,7 +1612,7 @@ void exr_blocks_close(exr_blocks **blocks)
 {
     if (!*blocks)
         return;
-    exr_decoding_destroy((*blocks)->layout.file->exr, &(*blocks)->pipeline);
+    end_unpacking((*blocks)->layout.file, &(*blocks)->pipeline);
     mem_free(*blocks);
     *blocks = NULL;
 }

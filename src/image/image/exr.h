@@ -132,6 +132,15 @@ relume_status exr_read(const exr_file *file, int part, const struct relume_rect 
                        void (*sink)(void *context, const struct relume_rect *at,
                                     const void *samples),
                        void *context, const struct relume_log *log);
+// The same of samples that are converted before `sink` gets them: codes[row][channel][x]. `convert`
+// depends on the sample alone: where few values occur it is called once for each. *wrong
+// where it refused some, which `sink` does not get.
+struct piz_conversion;
+relume_status exr_read_codes(const exr_file *file, int part, const struct relume_rect *rect,
+                             int threads, const struct piz_conversion *to, bool *wrong,
+                             void (*sink)(void *context, const struct relume_rect *at,
+                                          const void *codes),
+                             void *context, const struct relume_log *log);
 // What of `at` lies within `rect`; nothing has no rows.
 struct relume_rect exr_overlap(const struct relume_rect *at, const struct relume_rect *rect);
 

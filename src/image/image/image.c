@@ -6,9 +6,11 @@
 #include "core/base/memory.h"
 #include "core/base/params.h"
 #include "core/base/scratch.h"
+#include "core/base/thread.h"
 #include "core/base/tree.h"
 #include "image/image/exr.h"
 #include "core/base/half.h"
+#include "core/math/float_steps.h"
 #include "image/image/picture_kind.h"
 #include "image/image/profile.h"
 
@@ -436,23 +438,56 @@ static relume_status save_exr(const struct relume_image *image, const char *path
     return exr_write(path, p->writer, &part, 1, false, p->threads > 1 ? p->threads : 1, &quiet);
 }
 
-// Codes of `bytes` each, of light those of sRGB.
-static void quantise(void *out, const struct relume_image *image, size_t bytes, bool data)
+static int code_of(float v, float top)
+{
+    return v >= 1.0f ? (int)top : v > 0.0f ? (int)(v * top + 0.5f) : 0;
+}
+
+static int srgb_byte(float linear)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
-    const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    const float top = bytes == 2 ? 65535.0f : 255.0f;
-    uint8_t *narrow = out;
-    uint16_t *wide = out;
+    return code_of(relume_transfer_encode(srgb, linear), 255.0f);
+}
+
+static int srgb_word(float linear)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    return code_of(relume_transfer_encode(srgb, linear), 65535.0f);
+}
+
+struct quantising {
+    const struct relume_image *image;
+    void *out;
+    size_t bytes;
+    bool data;
+    struct float_steps srgb;  // of one byte
+};
+
+static void quantise_row(void *context, size_t y, int worker)
+{
+    const struct quantising *q = context;
+    const size_t channels = (size_t)q->image->channels, n = (size_t)q->image->width * channels;
+    const float *from = q->image->data + y * n;
+    uint8_t *narrow = (uint8_t *)q->out + y * n;
+    uint16_t *wide = (uint16_t *)q->out + y * n;
+    (void)worker;
     for (size_t i = 0; i < n; i++) {
-        const bool as_is = data || (image->channels == 4 && i % 4 == 3);
-        const float v = as_is ? image->data[i] : relume_transfer_encode(srgb, image->data[i]);
-        const int code = v >= 1.0f ? (int)top : v > 0.0f ? (int)(v * top + 0.5f) : 0;
-        if (bytes == 2)
-            wide[i] = (uint16_t)code;
+        const bool as_is = q->data || (channels == 4 && i % 4 == 3);
+        if (q->bytes == 2)
+            wide[i] = (uint16_t)(as_is ? code_of(from[i], 65535.0f) : srgb_word(from[i]));
         else
-            narrow[i] = (uint8_t)code;
+            narrow[i] = (uint8_t)(as_is ? code_of(from[i], 255.0f) : float_step(&q->srgb, from[i]));
     }
+}
+
+// Codes of `bytes` each, of light those of sRGB.
+static void quantise(void *out, const struct relume_image *image, size_t bytes, bool data,
+                     int threads)
+{
+    struct quantising q = {.image = image, .out = out, .bytes = bytes, .data = data};
+    if (bytes == 1 && !data)
+        float_steps_init(&q.srgb, srgb_byte, 255);
+    thread_for(threads, (size_t)image->height, quantise_row, &q);
 }
 
 static relume_status save_codes(const struct relume_image *image, const char *path,
@@ -462,12 +497,14 @@ static relume_status save_codes(const struct relume_image *image, const char *pa
     const size_t bytes = p->bits == 16 ? 2 : 1;
     void *samples = mem_array(n, bytes);
     struct picture_codes codes = {
-        .array = {samples, bytes, image->width, image->height, image->channels}, .data = p->codes};
+        .array = {samples, bytes, image->width, image->height, image->channels},
+        .data = p->codes,
+        .threads = p->threads > 1 ? p->threads : 1};
     void *profile = p->profile ? profile_srgb(&codes.profile_size) : NULL;
     relume_status status = samples && (profile || !p->profile) ? RELUME_OK : RELUME_ENOMEM;
     codes.profile = profile;
     if (!status) {
-        quantise(samples, image, bytes, p->codes);
+        quantise(samples, image, bytes, p->codes, codes.threads);
         status = picture_write_codes(path, p->writer, &codes, p->log);
     }
     mem_free(profile);

@@ -82,6 +82,7 @@ struct picture_codes {
     bool data;            // values that are no sRGB codes
     const void *profile;  // ICC, which formats without one leave out; NULL: none
     size_t profile_size;
+    int threads;  // of PNG; up to 1: one
 };
 // Writes these likewise. picture_writes_words names the formats of 2 bytes.
 bool picture_writes_words(const char *path);

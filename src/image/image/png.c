@@ -6,6 +6,7 @@
 #include "core/base/outfile.h"
 #include "image/image/picture.h"
 #include "image/image/picture_format.h"
+#include "image/image/png_rows.h"
 
 #include <errno.h>
 #include <png.h>
@@ -210,6 +211,8 @@ struct writer {
     png_infop info;
     struct trap trap;
     struct relume_buffer out;
+    struct png_piece *piece;  // [pieces], of the rows
+    size_t pieces;
 };
 
 static void append(png_structp png, png_bytep bytes, size_t n)
@@ -233,7 +236,7 @@ enum { EFFORT = 2 };
 static bool encode(struct writer *w, const struct picture_codes *codes)
 {
     const struct picture_array *a = &codes->array;
-    const size_t row = (size_t)a->width * (size_t)a->channels * a->bytes;
+    static const uint8_t data[] = "IDAT", end[] = "IEND";
     if (setjmp(w->trap.jump))
         return false;
     png_set_write_fn(w->png, w, append, no_flush);
@@ -242,15 +245,12 @@ static bool encode(struct writer *w, const struct picture_codes *codes)
                  : a->channels == 3 ? PNG_COLOR_TYPE_RGB
                                     : PNG_COLOR_TYPE_GRAY,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_level(w->png, EFFORT);
     if (!codes->data)
         png_set_sRGB(w->png, w->info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(w->png, w->info);
-    if (a->bytes == 2 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
-        png_set_swap(w->png);
-    for (int y = 0; y < a->height; y++)
-        png_write_row(w->png, (const uint8_t *)a->data + (size_t)y * row);
-    png_write_end(w->png, NULL);
+    for (size_t i = 0; i < w->pieces; i++)
+        png_write_chunk(w->png, data, w->piece[i].data, w->piece[i].size);
+    png_write_chunk(w->png, end, NULL, 0);
     return true;
 }
 
@@ -264,6 +264,9 @@ relume_status png_write(const char *path, const struct relume_writer *writer,
     if (w && w->png)
         w->info = png_create_info_struct(w->png);
     relume_status status = w && w->info ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = png_rows_deflate(&w->piece, &w->pieces, &codes->array, EFFORT,
+                                  codes->threads > 1 ? codes->threads : 1);
     if (!status && !encode(w, codes))
         status = w->trap.short_of_memory
                      ? RELUME_ENOMEM
@@ -272,8 +275,10 @@ relume_status png_write(const char *path, const struct relume_writer *writer,
         status = outfile_save_to(path, writer, w->out.data, w->out.size, log);
     if (w && w->png)
         png_destroy_write_struct(&w->png, &w->info);
-    if (w)
+    if (w) {
+        png_rows_destroy(&w->piece, w->pieces);
         relume_buffer_destroy(&w->out);
+    }
     mem_free(w);
     return status;
 }

@@ -53,7 +53,8 @@ static relume_status render_view(relume_renderer *r, const struct relume_camera 
     const struct relume_image *view = &r->image[r->shown][camera->view];
     const bool whole = is_whole_view(r, camera);
     if (whole && r->shown == SHOWN_LIGHT)
-        return renderer_relight(r, camera->view, out);
+        return frame_bands_suit(r) ? frame_bands(out, r, camera->view)
+                                   : renderer_relight(r, camera->view, out);
     const struct relume_rect all = {0, 0, r->info->width, r->info->height};
     if (frame_detail_suits(r, &all, camera->width, camera->height))
         return frame_detail(out, r, camera->view, &all, camera->width, camera->height);

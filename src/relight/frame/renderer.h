@@ -122,6 +122,10 @@ relume_status frame_parts(bool *whole, relume_renderer *r, vec3 eye, const int f
 // `out` is created.
 relume_status frame_rows(struct relume_image *out, relume_renderer *r, int view, int level,
                          const struct relume_rect *rect);
+// A whole view under distant lights, band by band, of which nothing is kept: whether that shows
+// what the frame asks for; `out` is created (bands.c).
+bool frame_bands_suit(const relume_renderer *r);
+relume_status frame_bands(struct relume_image *out, relume_renderer *r, int view);
 // Pictures of a view in another size.
 struct relume_scale_params frame_scaling(const relume_renderer *r);
 // A rectangle of a view, smaller, band by band: whether that saves reading or memory and shows what

@@ -34,13 +34,16 @@ static relume_status shrink(struct relume_image *out, const struct relume_image 
     const relume_status status = relume_image_create(out, w > 0 ? w : 1, h > 0 ? h : 1, 3);
     if (status)
         return status;
+    const float share = 1.0f / (float)(step * step);
     for (int y = 0; y < h * step; y++) {
         const float *p = from->data + 3 * (size_t)y * (size_t)from->width;
-        float *sum = out->data + 3 * (size_t)(y / step) * (size_t)w;
-        for (int x = 0; x < w; x++, sum += 3)
+        float *to = out->data + 3 * (size_t)(y / step) * (size_t)w;
+        for (int x = 0; x < w; x++, to += 3) {
+            float r = to[0], g = to[1], b = to[2];
             for (int i = 0; i < step; i++, p += 3)
-                for (int c = 0; c < 3; c++)
-                    sum[c] += p[c] / (float)(step * step);
+                r += share * p[0], g += share * p[1], b += share * p[2];
+            to[0] = r, to[1] = g, to[2] = b;
+        }
     }
     return RELUME_OK;
 }

@@ -34,8 +34,7 @@ static inline __attribute__((always_inline)) void take_word(uint32_t v[8], int p
     const uint32_t a = v[(8 - place) & 7], b = v[(9 - place) & 7], c = v[(10 - place) & 7];
     const uint32_t e = v[(12 - place) & 7], f = v[(13 - place) & 7], g = v[(14 - place) & 7];
     uint32_t *d = &v[(11 - place) & 7], *h = &v[(15 - place) & 7];
-    const uint32_t t1 =
-        *h + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + ((e & f) ^ (~e & g)) + word;
+    const uint32_t t1 = *h + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + ((e & f) ^ (~e & g)) + word;
     *d += t1;
     *h = t1 + (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
 }

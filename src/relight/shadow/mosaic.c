@@ -39,8 +39,7 @@ static void take_sample(const struct mosaic *m, size_t to, float value, float wh
         ((float *)m->pictures)[to] = relume_transfer_encode(coded, value);
     else
         ((uint16_t *)m->pictures)[to] = (uint16_t)lrintf(
-            65535.0f *
-            relume_transfer_encode(coded, fminf(fmaxf(value / white, 0.0f), 1.0f)));
+            65535.0f * relume_transfer_encode(coded, fminf(fmaxf(value / white, 0.0f), 1.0f)));
 }
 
 // A row of the mosaic under a light; `row`: of those fetched last.
@@ -100,8 +99,7 @@ static relume_status take_all(struct mosaic *m, const relume_capture *capture, f
                               struct relume_transfer coded, const struct relume_log *log)
 {
     const int lights = relume_capture_manifest(capture)->lights;
-    struct taking t = {.coded = coded,
-                       .white = mem_array((size_t)lights, sizeof *t.white)};
+    struct taking t = {.coded = coded, .white = mem_array((size_t)lights, sizeof *t.white)};
     relume_table *table = NULL;
     relume_status status = t.white ? take_mask(m, capture, log) : RELUME_ENOMEM;
     for (int i = 0; t.white && i < lights; i++) {

@@ -7,7 +7,7 @@
 #include "capture/acquire/ball.h"
 
 enum { COARSE = 30 };              // of the picture's larger side
-enum { ENOUGH = 1 << 20 };         // pixels: of larger pictures fewer places are looked at
+enum { ENOUGH = 1 << 20 };         // pixels: larger pictures are sampled
 static const float FLOOR = 5e-3f;  // where noise rules
 
 static float tone(const struct relume_image *image, int x, int y)

@@ -27,13 +27,13 @@ static inline uint32_t turn(uint32_t v, int bits)
     return v >> bits | v << (32 - bits);
 }
 
-// 6.2.2, with its letters. Instead of the values their names go round: those of a place are in a
-// constant register once the loop over eight places is unrolled.
-static inline __attribute__((always_inline)) void take_word(uint32_t v[8], int place, uint32_t word)
+// 6.2.2, with its letters. Instead of the values their names go round: a name is one register
+// once the loop over eight words is unrolled.
+static inline __attribute__((always_inline)) void take_word(uint32_t v[8], int turns, uint32_t word)
 {
-    const uint32_t a = v[(8 - place) & 7], b = v[(9 - place) & 7], c = v[(10 - place) & 7];
-    const uint32_t e = v[(12 - place) & 7], f = v[(13 - place) & 7], g = v[(14 - place) & 7];
-    uint32_t *d = &v[(11 - place) & 7], *h = &v[(15 - place) & 7];
+    const uint32_t a = v[(8 - turns) & 7], b = v[(9 - turns) & 7], c = v[(10 - turns) & 7];
+    const uint32_t e = v[(12 - turns) & 7], f = v[(13 - turns) & 7], g = v[(14 - turns) & 7];
+    uint32_t *d = &v[(11 - turns) & 7], *h = &v[(15 - turns) & 7];
     const uint32_t t1 = *h + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + ((e & f) ^ (~e & g)) + word;
     *d += t1;
     *h = t1 + (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));

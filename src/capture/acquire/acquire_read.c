@@ -34,12 +34,17 @@ static relume_status shrink(struct relume_image *out, const struct relume_image 
     const relume_status status = relume_image_create(out, w > 0 ? w : 1, h > 0 ? h : 1, 3);
     if (status)
         return status;
-    for (int y = 0; y < h * step; y++)
-        for (int x = 0; x < w * step; x++)
-            for (int c = 0; c < 3; c++)
-                out->data[3 * ((size_t)(y / step) * (size_t)w + (size_t)(x / step)) + (size_t)c] +=
-                    from->data[3 * ((size_t)y * (size_t)from->width + (size_t)x) + (size_t)c] /
-                    (float)(step * step);
+    const float share = 1.0f / (float)(step * step);
+    for (int y = 0; y < h * step; y++) {
+        const float *p = from->data + 3 * (size_t)y * (size_t)from->width;
+        float *to = out->data + 3 * (size_t)(y / step) * (size_t)w;
+        for (int x = 0; x < w; x++, to += 3) {
+            float r = to[0], g = to[1], b = to[2];
+            for (int i = 0; i < step; i++, p += 3)
+                r += share * p[0], g += share * p[1], b += share * p[2];
+            to[0] = r, to[1] = g, to[2] = b;
+        }
+    }
     return RELUME_OK;
 }
 
@@ -48,25 +53,50 @@ relume_status acquire_shrink(struct relume_image *out, const struct relume_image
     return shrink(out, from, SHOT_SMALL);
 }
 
+struct ends {
+    unsigned white, black, outside;  // pixels
+};
+
+// `to_file`, or NULL where values are as the file has them.
+static struct ends ends_of(const float *p, int n, const float to_file[9])
+{
+    struct ends e = {0, 0, 0};
+    for (int i = 0; !to_file && i < n; i++, p += 3) {
+        e.white += (p[0] >= WHITE) | (p[1] >= WHITE) | (p[2] >= WHITE);
+        e.black += (p[0] <= BLACK) & (p[1] <= BLACK) & (p[2] <= BLACK);
+    }
+    for (int i = 0; to_file && i < n; i++, p += 3) {
+        bool white = false, outside = false;
+        for (int c = 0; c < 3; c++) {
+            const float *m = to_file + 3 * c;
+            white |= m[0] * p[0] + m[1] * p[1] + m[2] * p[2] >= WHITE;
+            outside |= (p[c] < -BLACK) | (p[c] > 1.0f + BLACK);
+        }
+        e.white += white;
+        e.black += (p[0] <= BLACK) & (p[1] <= BLACK) & (p[2] <= BLACK);
+        e.outside += outside;
+    }
+    return e;
+}
+
 // Counts the pixels at both ends of the code values, and those whose colour sRGB does not hold.
 static relume_status count_ends(struct shot *shot, const struct relume_image *image)
 {
-    const size_t n = (size_t)image->width * (size_t)image->height;
+    const size_t width = (size_t)image->width, n = width * (size_t)image->height;
     size_t white = 0, black = 0, outside = 0;
     double m[9];
+    float to_file[9];
     for (int i = 0; i < 9; i++)
         m[i] = shot->notes.profile ? (double)shot->notes.to_srgb[i] : i % 4 == 0;
     const relume_status status = lsq_invert(m, 3);
-    for (size_t i = 0; !status && i < n; i++) {
-        const float *p = image->data + 3 * i;
-        float most = 0.0f;  // of the values as the file has them
-        for (int c = 0; c < 3; c++)
-            most = fmaxf(most, (float)m[3 * c] * p[0] + (float)m[3 * c + 1] * p[1] +
-                                   (float)m[3 * c + 2] * p[2]);
-        white += !shot->notes.floats && most >= WHITE;
-        black += p[0] <= BLACK && p[1] <= BLACK && p[2] <= BLACK;
-        outside += shot->notes.profile && (fminf(fminf(p[0], p[1]), p[2]) < -BLACK ||
-                                           fmaxf(fmaxf(p[0], p[1]), p[2]) > 1.0f + BLACK);
+    for (int i = 0; i < 9; i++)
+        to_file[i] = (float)m[i];
+    for (size_t y = 0; !status && y < (size_t)image->height; y++) {
+        const struct ends row = ends_of(image->data + 3 * y * width, image->width,
+                                        shot->notes.profile ? to_file : NULL);
+        white += shot->notes.floats ? 0 : row.white;
+        black += row.black;
+        outside += row.outside;
     }
     shot->saturated = (float)white / (float)n;
     shot->black = (float)black / (float)n;

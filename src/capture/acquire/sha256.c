@@ -22,12 +22,23 @@ void sha256_init(struct sha256 *s)
                                    0x9b05688c, 0x1f83d9ab, 0x5be0cd19}};
 }
 
-static uint32_t turn(uint32_t v, int bits)
+static inline uint32_t turn(uint32_t v, int bits)
 {
     return v >> bits | v << (32 - bits);
 }
 
-// 6.2.2, with its letters
+// 6.2.2, with its letters. Instead of the values their names go round: a name is one register
+// once the loop over eight words is unrolled.
+static inline __attribute__((always_inline)) void take_word(uint32_t v[8], int turns, uint32_t word)
+{
+    const uint32_t a = v[(8 - turns) & 7], b = v[(9 - turns) & 7], c = v[(10 - turns) & 7];
+    const uint32_t e = v[(12 - turns) & 7], f = v[(13 - turns) & 7], g = v[(14 - turns) & 7];
+    uint32_t *d = &v[(11 - turns) & 7], *h = &v[(15 - turns) & 7];
+    const uint32_t t1 = *h + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + ((e & f) ^ (~e & g)) + word;
+    *d += t1;
+    *h = t1 + (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+}
+
 static void add_block(uint32_t h[8], const uint8_t *block)
 {
     uint32_t w[64], v[8];
@@ -40,15 +51,15 @@ static void add_block(uint32_t h[8], const uint8_t *block)
                (turn(b, 17) ^ turn(b, 19) ^ b >> 10);
     }
     memcpy(v, h, sizeof v);
-    for (int t = 0; t < 64; t++) {
-        const uint32_t e = v[4], a = v[0];
-        const uint32_t t1 = v[7] + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) +
-                            ((e & v[5]) ^ (~e & v[6])) + k[t] + w[t];
-        const uint32_t t2 =
-            (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
-        memmove(v + 1, v, 7 * sizeof *v);
-        v[4] += t1;
-        v[0] = t1 + t2;
+    for (int t = 0; t < 64; t += 8) {
+        take_word(v, 0, k[t] + w[t]);
+        take_word(v, 1, k[t + 1] + w[t + 1]);
+        take_word(v, 2, k[t + 2] + w[t + 2]);
+        take_word(v, 3, k[t + 3] + w[t + 3]);
+        take_word(v, 4, k[t + 4] + w[t + 4]);
+        take_word(v, 5, k[t + 5] + w[t + 5]);
+        take_word(v, 6, k[t + 6] + w[t + 6]);
+        take_word(v, 7, k[t + 7] + w[t + 7]);
     }
     for (int i = 0; i < 8; i++)
         h[i] += v[i];
@@ -59,11 +70,14 @@ void sha256_add(struct sha256 *s, const void *bytes, size_t n)
     const uint8_t *from = bytes;
     while (n) {
         const size_t at = s->bytes % 64, some = n < 64 - at ? n : 64 - at;
-        memcpy(s->block + at, from, some);
+        if (some == 64)
+            add_block(s->state, from);
+        else
+            memcpy(s->block + at, from, some);
         s->bytes += some;
         from += some;
         n -= some;
-        if (s->bytes % 64 == 0)
+        if (some < 64 && s->bytes % 64 == 0)
             add_block(s->state, s->block);
     }
 }

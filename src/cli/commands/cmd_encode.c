@@ -131,6 +131,9 @@ static const struct option options[] = {
     {0},
 };
 
+// Decoded images wait in memory up to this size, the rest of them beside the file.
+#define KEPT_BYTES ((size_t)384 << 20)
+
 // Opens the capture, encodes it, and prints how good the file is.
 static relume_status encode(const struct args *args, const char *input, const char *output,
                             const struct relume_capture_params *open,
@@ -140,7 +143,7 @@ static relume_status encode(const struct args *args, const char *input, const ch
     struct relume_encode_result result;
     struct relume_capture_params own = *open;
     relume_capture *capture;
-    own.keep_bytes = relume_encode_rereads(params) ? KEEP_BYTES : 0;
+    own.keep_bytes = relume_encode_rereads(params) ? KEPT_BYTES : 0;
     relume_status status = relume_capture_open_photographs(&capture, input, &own, acquire, NULL);
     if (!status)
         status = relume_encode_capture(output, capture, &result, params);

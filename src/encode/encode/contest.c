@@ -13,7 +13,7 @@
 enum { ROWS = 64 };
 static const enum av1_preset_number LOOKED_AT = AV1_REALTIME_9;
 
-// A view of pictures is decoded whole to relight it once. Above so many pixels that is waited for,
+// A view of pictures is decoded whole to relight it once. In large views that is waited for,
 // and pictures are to take half of the bytes.
 static const double MANY_PIXELS = 1e6, WAITING = 2.0;
 

@@ -20,7 +20,7 @@ static const double SPARE_DB = 3.0, USUAL_DB = 40.0;
 enum { MOST_PLANES = 1200, COLOURS = 3 };
 static const int FEW = 2;
 
-// Nothing smooths between pictures: lights left out are shown at most so much worse.
+// Nothing smooths between pictures, which may cost unseen lights this much.
 static const double LEAST_UNSEEN_DB = 0.2;
 
 static double wanted(const struct relume_pack_encode_params *p)

@@ -9,7 +9,7 @@
 #include "format/coder/coding.h"
 #include "format/lossy/av1.h"
 
-// Points of a curve: every so many quantisers, from the finest to the coarsest.
+// Points of a curve, RATE_EACH quantisers apart, from the finest to the coarsest.
 enum { RATE_EACH = 16, RATE_POINTS = (AV1_COARSEST - AV1_FINEST) / RATE_EACH + 1 };
 
 // Mean squared errors of display values that coding adds, and the bytes of all planes.
@@ -17,7 +17,7 @@ struct rate_curve {
     double error[RATE_POINTS], bytes[RATE_POINTS];
 };
 
-// The curve of a view by `rows` of its rows from `row` on, coded with so many bits a sample. The
+// The curve of a view by `rows` of its rows from `row` on, coded with `bits` a sample. The
 // steps are RELUME_STEP_HALVED or RELUME_STEP_COMMON; the error is of the captured lights.
 // RELUME_ENOMEM, RELUME_EIO.
 relume_status rate_model_curve(struct rate_curve *out, const relume_coefficients *coefficients,

@@ -40,6 +40,8 @@ struct encoding {
     struct measured *sums;       // [pieces of the band's rows]
     double *shown;               // [the same][lights]
     int measured[BAND_ROWS];     // rows of the band that are looked at
+    bool shown_only;             // of what is measured only squares of display values matter
+    int apart;                   // tiles are judged on one row of so many
     int run, first_run, runs;    // pixels of a row that are measured together, and which of them
     struct thread_task packing;  // of a band while the next one is read
     int packed_row, packed_rows;
@@ -216,6 +218,54 @@ static void measure_near(const struct encoding *e, int row, size_t first, size_t
     }
 }
 
+static double squares_between(const float *restrict a, const float *restrict b, size_t n)
+{
+    enum { LANES = 8 };
+    float lane[LANES] = {0.0f};
+    double sum = 0.0;
+    size_t x = 0;
+    for (; x + LANES <= n; x += LANES)
+        for (size_t l = 0; l < LANES; l++) {
+            const float d = encoder_clip(a[x + l]) - encoder_clip(b[x + l]);
+            lane[l] += d * d;
+        }
+    for (; x < n; x++) {
+        const float d = encoder_clip(a[x]) - encoder_clip(b[x]);
+        lane[0] += d * d;
+    }
+    for (size_t l = 0; l < LANES; l++)
+        sum += (double)lane[l];
+    return sum;
+}
+
+// Differences alone, of display values, which are masked by making both the same.
+static void measure_shown(const struct encoding *e, int row, size_t first, size_t n, int worker,
+                          struct measured *m, double *shown)
+{
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    const size_t at = (size_t)row * width + first, lights = (size_t)e->lights, size = lights * n;
+    const size_t of_view = (size_t)e->row * width + at;
+    float *again = piece_work(e, worker), *seen = again + size;
+    size_t inside = 0;
+    for (size_t x = 0; x < n; x++)
+        inside += is_inside(&e->mask, of_view + x);
+    for (size_t i = 0; inside && i < lights; i++)
+        relume_table_planes(e->table, (int)i, at, n, seen + i * n, size);
+    for (int c = 0; inside && c < 3; c++, seen += size) {
+        captured_predict(&e->captured, e->coder, c, e->values + at, pixels, n, again);
+        for (size_t x = 0; inside < n && x < n; x++)
+            for (size_t i = 0; !is_inside(&e->mask, of_view + x) && i < lights; i++)
+                again[i * n + x] = seen[i * n + x] = 0.0f;
+        if (e->screen) {
+            encoder_apply(e->screen, again, again, (int)size);
+            encoder_apply(e->screen, seen, seen, (int)size);
+        }
+        for (size_t i = 0; i < lights; i++)
+            shown[i] += squares_between(seen + i * n, again + i * n, n);
+    }
+    m->count += 3 * lights * inside;
+}
+
 static void measure_piece(void *context, size_t item, int worker)
 {
     struct encoding *e = context;
@@ -227,15 +277,29 @@ static void measure_piece(void *context, size_t item, int worker)
     double *shown = e->shown + item * lights;
     e->sums[item] = (struct measured){0};
     memset(shown, 0, lights * sizeof *shown);
-    (e->near ? measure_near : measure_fit)(e, row, first, n, worker, &e->sums[item], shown);
+    (e->near         ? measure_near
+     : e->shown_only ? measure_shown
+                     : measure_fit)(e, row, first, n, worker, &e->sums[item], shown);
 }
 
-// Some runs of those rows of the band that the report looks at, or of all of them: so many items.
-static size_t measure_runs(struct encoding *e, bool every)
+// One row of `apart`, in every band another, so that all rows of the blocks of coders count alike.
+static bool is_judged(const struct encoding *e, int row)
+{
+    return row % e->apart == row / BAND_ROWS * 3 % e->apart;
+}
+
+// Rows that a report looks at, or judging tiles.
+static bool is_looked_at(const struct encoding *e, int row)
+{
+    return e->apart ? is_judged(e, row) : is_measured(e->out, row);
+}
+
+// Some runs of those rows of the band that are looked at: so many items.
+static size_t measure_runs(struct encoding *e)
 {
     size_t rows = 0;
     for (int y = 0; y < e->rows; y++)
-        if (every || is_measured(e->out, e->row + y))
+        if (is_looked_at(e, e->row + y))
             e->measured[rows++] = y;
     thread_for(e->threads, rows * (size_t)e->runs, measure_piece, e);
     return rows * (size_t)e->runs;
@@ -243,7 +307,7 @@ static size_t measure_runs(struct encoding *e, bool every)
 
 static void measure_band(struct encoding *e)
 {
-    const size_t lights = (size_t)e->lights, items = measure_runs(e, false);
+    const size_t lights = (size_t)e->lights, items = measure_runs(e);
     for (size_t k = 0; k < items; k++) {
         e->row_error[e->row + e->measured[k / (size_t)e->runs]] += e->sums[k].error;
         e->root_sum += e->sums[k].root_sum;
@@ -840,13 +904,23 @@ struct relume_fidelity project_rows_fidelity(const struct project_rows *all, int
 
 // ---------------------------------------------------------------- other coefficients
 
-// The rows of `values` in a band, or those of a report.
-static void take_values(struct encoding *e, bool every, const struct encode_values *values)
+// The rows of `values` in a band that are looked at.
+static void take_values(struct encoding *e, const struct encode_values *values)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     for (int y = 0; y < e->rows; y++)
-        if (every || is_measured(e->out, e->row + y))
+        if (is_looked_at(e, e->row + y))
             values->row(values->user, e->row + y, e->values + (size_t)y * (size_t)e->width, pixels);
+}
+
+// So that some hundred thousand pixels of a view are judged, or all of a smaller one.
+static int rows_apart(size_t pixels)
+{
+    enum { ENOUGH = 400000, MOST_APART = 8 };
+    int apart = 1;
+    while (apart < MOST_APART && pixels / (2 * (size_t)apart) >= ENOUGH)
+        apart *= 2;
+    return apart;
 }
 
 // To read the images from `row` on, and to compare them.
@@ -862,6 +936,8 @@ static relume_status begin_judging(struct encoding *e, relume_coefficients *c,
         e->row = tiles->first / tiles->across * tiles->side;
         e->end = last + tiles->side < e->height ? last + tiles->side : e->height;
         e->run = tiles->side < PIECE ? tiles->side : PIECE;
+        e->shown_only = true;
+        e->apart = rows_apart((size_t)e->width * (size_t)e->height);
     }
     if (!status)
         status = alloc_encoder(e, capture);
@@ -886,7 +962,7 @@ relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume
     for (; !status && e.row < e.end; e.row += BAND_ROWS) {
         status = read_band(&e);
         if (!status) {
-            take_values(&e, false, values);
+            take_values(&e, values);
             measure_band(&e);
         }
         if (!status && !say_done(&e, capture, view, "measuring", p->log))
@@ -935,8 +1011,8 @@ relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients 
         status = read_band(&e);
         if (!status) {
             choose_runs(&e, tiles);
-            take_values(&e, true, values);
-            add_runs(out, &e, tiles, measure_runs(&e, true));
+            take_values(&e, values);
+            add_runs(out, &e, tiles, measure_runs(&e));
         }
         if (!status && !say_done(&e, capture, view, "measuring", p->log))
             status = RELUME_ECANCEL;

@@ -25,7 +25,7 @@ struct piz_decoder {
     uint8_t step[1 << INDEX];  // count << COUNT_SHIFT | length
     struct entry entry[1 << INDEX];
     uint16_t value[VALUES];           // of each number
-    int values;                       // in use; the others are 0
+    int values;                       // in use, before zeroes
     uint8_t length[SYMBOLS];          // of each symbol's code; 0: does not occur
     uint32_t sorted[SYMBOLS];         // symbols in the order of their lengths
     uint64_t first[MAX_LENGTH + 1];   // code of each length, at the top of 64 bits

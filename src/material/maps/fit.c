@@ -4,6 +4,7 @@
 // make vector code of both without reordering.
 #include "material/maps/fit.h"
 
+#include "core/kernel/clones.h"
 #include "core/math/scalar.h"
 
 static const float DARKER = 0.12f, BRIGHTER = 0.2f;  // residuals, coded, that count a quarter
@@ -67,7 +68,7 @@ static inline struct judged judge(float residual, float cosine, float clipped, f
 }
 
 // One round of reweighted least squares of one channel.
-static float refit(float colour, const struct look *k, int c, float wide)
+CLONED_FOR_AVX2 static float refit(float colour, const struct look *k, int c, float wide)
 {
     struct lanes top = {{0}}, bottom = {{0}};
     for (int first = 0; first < k->lights; first += CHUNK) {
@@ -89,7 +90,7 @@ static float refit(float colour, const struct look *k, int c, float wide)
     return found < 0.0f ? 0.0f : found > 1.0f ? 1.0f : found;
 }
 
-static float loss_of(const float colour[3], const struct look *k, float wide)
+CLONED_FOR_AVX2 static float loss_of(const float colour[3], const struct look *k, float wide)
 {
     struct lanes sum = {{0}}, count = {{0}};
     for (int c = 0; c < 3; c++)
@@ -174,8 +175,8 @@ struct slopes {
     struct lanes aa, ab, bb, a, b;
 };
 
-static void add_lights(struct slopes *s, const struct look *k, const struct look beside[2],
-                       float colour, int c, float wide)
+CLONED_FOR_AVX2 static void add_lights(struct slopes *s, const struct look *k,
+                                       const struct look beside[2], float colour, int c, float wide)
 {
     for (int first = 0; first < k->lights; first += CHUNK) {
         const struct part p = part_of(k, c, first), a = part_of(&beside[0], c, first),

@@ -5,6 +5,7 @@
 // display curve, which are finer than theirs; floating-point numbers stay such.
 #include "relight/shadow/mosaic.h"
 
+#include "capture/manifest/reflectance_table.h"
 #include "core/base/log.h"
 #include "core/base/memory.h"
 
@@ -25,22 +26,36 @@ static void place_piece(int *at, int n, int whole)
             n == whole ? i : (2 * (i / PIECE) + 1) * whole / (2 * PIECES) - PIECE / 2 + i % PIECE;
 }
 
-static void take_picture(const struct mosaic *m, const struct relume_image *image, int light,
-                         struct relume_transfer coded, const float *white)
+struct taking {
+    const relume_table *table;
+    struct relume_transfer coded;
+    float (*white)[3];  // [lights]
+};
+
+static void take_sample(const struct mosaic *m, size_t to, float value, float white,
+                        struct relume_transfer coded)
 {
-    size_t to = 3 * (size_t)light * (size_t)m->rows * (size_t)m->columns;
-    for (int y = 0; y < m->rows; y++)
-        for (int x = 0; x < m->columns; x++) {
-            const float *from =
-                image->data + 3 * ((size_t)m->y[y] * (size_t)image->width + (size_t)m->x[x]);
+    if (isinf(white))
+        ((float *)m->pictures)[to] = relume_transfer_encode(coded, value);
+    else
+        ((uint16_t *)m->pictures)[to] = (uint16_t)lrintf(
+            65535.0f * relume_transfer_encode(coded, fminf(fmaxf(value / white, 0.0f), 1.0f)));
+}
+
+// A row of the mosaic under a light; `row`: of those fetched last.
+static void take_row(const struct mosaic *m, const struct taking *t, int light, int y, int row,
+                     int width)
+{
+    size_t to = 3 * ((size_t)light * (size_t)m->rows + (size_t)y) * (size_t)m->columns;
+    for (int x = 0, n; x < m->columns; x += n) {
+        float rgb[3][PIECE];
+        n = m->columns - x < PIECE ? m->columns - x : PIECE;
+        relume_table_planes(t->table, light, (size_t)row * (size_t)width + (size_t)m->x[x],
+                            (size_t)n, rgb[0], PIECE);
+        for (int i = 0; i < n; i++)
             for (int c = 0; c < 3; c++, to++)
-                if (isinf(white[c]))
-                    ((float *)m->pictures)[to] = relume_transfer_encode(coded, from[c]);
-                else
-                    ((uint16_t *)m->pictures)[to] = (uint16_t)lrintf(
-                        65535.0f * relume_transfer_encode(
-                                       coded, fminf(fmaxf(from[c] / white[c], 0.0f), 1.0f)));
-        }
+                take_sample(m, to, rgb[c][i], t->white[light][c], t->coded);
+    }
 }
 
 static relume_status take_mask(struct mosaic *m, const relume_capture *capture,
@@ -59,25 +74,46 @@ static relume_status take_mask(struct mosaic *m, const relume_capture *capture,
     return status;
 }
 
+// Rows of pieces are read, and those between them left out.
+static relume_status take_rows(struct mosaic *m, relume_table *table, const relume_capture *capture,
+                               const struct taking *t, const struct relume_log *log)
+{
+    const int lights = relume_capture_manifest(capture)->lights;
+    relume_status status = RELUME_OK;
+    for (int y = 0, at = 0, n; !status && y < m->rows; y += n, at = m->y[y - 1] + 1) {
+        n = m->rows - y < PIECE ? m->rows - y : PIECE;
+        if (!log_progress(log, "judging highlights", 0.3 * y / m->rows))
+            return RELUME_ECANCEL;
+        status = relume_table_skip(table, m->y[y] - at);
+        if (!status)
+            status = relume_table_fetch(table, n);
+        for (int i = 0; !status && i < n; i++)
+            for (int light = 0; light < lights; light++)
+                take_row(m, t, light, y + i, i, relume_capture_width(capture));
+    }
+    return status;
+}
+
 // `bright[lights]`: what their white was divided by.
 static relume_status take_all(struct mosaic *m, const relume_capture *capture, float (*bright)[3],
                               struct relume_transfer coded, const struct relume_log *log)
 {
     const int lights = relume_capture_manifest(capture)->lights;
-    relume_status status = take_mask(m, capture, log);
-    for (int i = 0; !status && i < lights; i++) {
-        struct relume_image image = {0};
-        float white[3];
-        if (!log_progress(log, "judging highlights", 0.3 * i / lights))
-            return RELUME_ECANCEL;
-        status = relume_capture_image(&image, capture, 0, i, log);
-        relume_capture_white(capture, i, white);
-        if (!status)
-            take_picture(m, &image, i, coded, white);
+    struct taking t = {.coded = coded, .white = mem_array((size_t)lights, sizeof *t.white)};
+    relume_table *table = NULL;
+    relume_status status = t.white ? take_mask(m, capture, log) : RELUME_ENOMEM;
+    for (int i = 0; t.white && i < lights; i++) {
+        relume_capture_white(capture, i, t.white[i]);
         for (int c = 0; c < 3; c++)
-            bright[i][c] = isinf(white[c]) ? 1.0f : 1.0f / white[c];
-        relume_image_destroy(&image);
+            bright[i][c] = isinf(t.white[i][c]) ? 1.0f : 1.0f / t.white[i][c];
     }
+    if (!status)
+        status = relume_table_open(&table, capture, 0, relume_table_params(.log = log));
+    t.table = table;
+    if (!status)
+        status = take_rows(m, table, capture, &t, log);
+    relume_table_destroy(&table);
+    mem_free(t.white);
     return status;
 }
 

@@ -161,6 +161,7 @@ struct relume_encode_result {
     double photograph_bytes;  // of the photographs' files; 0: unknown
     bool is_coarse;           // the storage asked for is too coarse for bright highlights
     struct relume_moving_report shadows, highlights;
+    bool coder_crashed;  // the file is lossless; its shadows and highlights fade
 };
 
 // Encodes `capture` into the file `path`, whole or not at all; `path` is NULL with a writer.
@@ -169,6 +170,9 @@ struct relume_encode_result {
 // writer. RELUME_EUNFIT where the capture does not suit: its shadows or highlights cannot move, its
 // lights determine fewer coefficients. An input status, RELUME_EIO, RELUME_ENOMEM, RELUME_ESYSTEM,
 // RELUME_ECANCEL.
+// libaom codes lossy planes in a process of relume-helper where that program is installed. If the
+// process crashes or is killed, a warning says so and the file becomes lossless. Parts, teams and
+// writers get RELUME_ECODER.
 // Thread-safety: a capture may be encoded by several threads at once.
 RELUME_RESULT relume_status relume_encode_capture(
     const char *path, const relume_capture *capture, struct relume_encode_result *result,

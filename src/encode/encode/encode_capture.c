@@ -2,13 +2,15 @@
 //
 //     check -> shadows? -> learn the coder -> highlights? -> write -> report
 //
-// A file whose JND is asked for is several of these (jnd_search.c).
+// A file whose JND is asked for is several of these (jnd_search.c). Where libaom crashes, the file
+// is encoded once more without it (crash.h).
 #include <relume/encode.h>
 
 #include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
 #include "core/base/params.h"
+#include "encode/encode/crash.h"
 #include "encode/encode/jnd_search.h"
 #include "encode/encode/moving.h"
 #include "encode/encode/request.h"
@@ -294,6 +296,35 @@ static relume_status encode_once(const char *path, const relume_capture *capture
     return status;
 }
 
+static relume_status encode_as_asked(const char *path, const relume_capture *capture,
+                                     struct relume_encode_result *result,
+                                     const struct relume_encode_capture_params *p)
+{
+    return p->jnd > 0.0 ? jnd_search(path, capture, result, p, encode_once)
+                        : encode_once(path, capture, 0.0, result, p);
+}
+
+// Parts agree about how they are coded, and a writer may have got bytes already: these fail.
+static relume_status encode_safely(const char *path, const relume_capture *capture,
+                                   struct relume_encode_result *result,
+                                   const struct relume_encode_capture_params *p)
+{
+    struct crash_watch watch;
+    struct relume_encode_capture_params attempt = *p;
+    attempt.log = crash_watch_begin(&watch, p->log);
+    const relume_status status = encode_as_asked(path, capture, result, &attempt);
+    const bool crashed = status == RELUME_ECODER && !p->parts && !p->team && !p->writer;
+    crash_watch_end(&watch, !crashed);
+    if (!crashed)
+        return status;
+    crash_say(&watch, p);
+    attempt = crash_params(p);
+    *result = (struct relume_encode_result){0};
+    const relume_status again = encode_as_asked(path, capture, result, &attempt);
+    result->coder_crashed = true;
+    return again;
+}
+
 relume_status relume_encode_capture(const char *path, const relume_capture *capture,
                                     struct relume_encode_result *result,
                                     const struct relume_encode_capture_params *params)
@@ -304,8 +335,7 @@ relume_status relume_encode_capture(const char *path, const relume_capture *capt
         return RELUME_EINVAL;
     relume_status status = relume_encode_check(&p);
     if (!status)
-        status = p.jnd > 0.0 ? jnd_search(path, capture, &own, &p, encode_once)
-                             : encode_once(path, capture, 0.0, &own, &p);
+        status = encode_safely(path, capture, &own, &p);
     if (status)
         own = (struct relume_encode_result){0};
     if (result)

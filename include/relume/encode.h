@@ -178,6 +178,15 @@ RELUME_RESULT relume_status relume_encode_capture(
     const char *path, const relume_capture *capture, struct relume_encode_result *result,
     const struct relume_encode_capture_params *params);
 
+// Writes an open relume file with lossy planes into the file `path`. The file keeps its
+// functions of light, depth, masks, levels and models of shadows and highlights; `measured.psnr_db`
+// compares with what the file itself shows under its captured lights. Of the params log, threads,
+// name, pyramid, psnr_db, bytes_per_pixel, effort and writer are used. RELUME_EINVAL for other
+// params, else as relume_encode_capture.
+RELUME_RESULT relume_status relume_encode_again(const char *path, relume_pack *pack,
+                                                struct relume_encode_result *result,
+                                                const struct relume_encode_capture_params *params);
+
 #ifdef __cplusplus
 }
 #endif

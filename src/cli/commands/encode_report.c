@@ -227,3 +227,15 @@ void say_encoded(const struct args *args, const struct encoded_file *f)
                  "%s: very bright highlights: %s will ruin the picture; use --bits half", f->output,
                  storage_words(r->storage));
 }
+
+void say_coded_again(const struct args *args, const struct encoded_file *f, double bytes)
+{
+    const struct relume_encode_result *r = f->result;
+    char size[64] = "", more[128] = "";
+    if (r->file_bytes > 0.0)
+        snprintf(size, sizeof size, ", %.2f times the bytes", r->file_bytes / bytes);
+    describe_reach(more, f);
+    announce(args, RELUME_NOTE,
+             "%s: shows what %s shows at %.1f dB PSNR (differences %s), lossy%s%s",
+             f->output, f->input, r->measured.psnr_db, judgement(r->measured.psnr_db), size, more);
+}

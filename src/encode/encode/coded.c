@@ -65,8 +65,9 @@ static relume_status find_words(struct coding *c, struct relume_fidelity *report
     struct rate_result result;
     double allowed = 0.0;
     relume_status status = find_allowed(&allowed, c);
-    const struct rate_target target = {
-        f->p->psnr_db, allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0)), f->p->effort};
+    const struct rate_target target = {f->p->psnr_db,
+                                       allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0)),
+                                       f->p->effort, f->again != NULL};
     if (!status)
         status = rate_encode(f->words, &result, f->coefficients, f->coder, &c->groups, f->capture,
                              &target, f->encode, c->team ? &by : NULL);
@@ -75,8 +76,10 @@ static relume_status find_words(struct coding *c, struct relume_fidelity *report
     c->effort = result.effort;
     *report = fidelity_mean(f->report, f->views);
     const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
+    const double before = report->store_rms;  // of the file that is coded again
     report->psnr_db = result.psnr_db;
-    report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
+    report->store_rms = report->steps_rms =
+        f->again ? hypot(all, before) : sqrt(fmax(all * all - fit * fit, 0.0));
     const double left = f->p->psnr_db > 0.0 ? (double)INFINITY : allowed - result.bytes;
     return c->leveled ? coding_find_levels(c, left) : RELUME_OK;
 }
@@ -99,7 +102,9 @@ relume_status encode_coded(struct contents *f, const char *path, struct relume_f
         status = make_groups(&c);
     if (!status)
         status = coded_rows_create(&c.rows, f, &c.groups, c.team);
-    if (!status)
+    if (!status && f->again)
+        coded_rows_settle(&c.rows);
+    else if (!status)
         status = coded_rows_find_steps(&c.rows);
     if (!status)
         status = coding_each_view(&c, c.own, coding_load_extras);

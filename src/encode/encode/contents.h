@@ -27,6 +27,7 @@ struct contents {
     int views;
     int first, end;  // those that are encoded
     int row, rows;   // of one view alone; 0 rows: all
+    relume_pack *again;  // the file that has the coefficients, of which there are no photographs
 };
 
 // `f` begins with the first four. RELUME_ENOMEM.

@@ -54,7 +54,7 @@ void crash_say(const struct crash_watch *w, const struct relume_encode_capture_p
     log_line(p->log, RELUME_WARNING, "%s: %s; %s; encode again for the file that was asked for",
              p->name ? p->name : "the capture", w->error,
              is_lossy(p) ? "the file is lossless, and larger"
-                              : "shadows and highlights fade in the file");
+                         : "shadows and highlights fade in the file");
 }
 
 struct relume_encode_capture_params crash_params(const struct relume_encode_capture_params *p)

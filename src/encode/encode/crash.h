@@ -23,7 +23,8 @@ void crash_watch_end(struct crash_watch *w, bool tell);
 
 // Warns that the coder crashed, and says how the file differs.
 void crash_say(const struct crash_watch *w, const struct relume_encode_capture_params *p);
-// The same params without anything that libaom codes: lossless, with shadows and highlights that fade.
+// The same params without anything that libaom codes: lossless, with shadows and highlights that
+// fade.
 struct relume_encode_capture_params crash_params(const struct relume_encode_capture_params *p);
 
 #endif

@@ -10,6 +10,7 @@
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
 #include "core/base/params.h"
+#include "encode/encode/again.h"
 #include "encode/encode/crash.h"
 #include "encode/encode/jnd_search.h"
 #include "encode/encode/moving.h"
@@ -340,5 +341,55 @@ relume_status relume_encode_capture(const char *path, const relume_capture *capt
         own = (struct relume_encode_result){0};
     if (result)
         *result = own;
+    return status;
+}
+
+// ---------------------------------------------------------------- a file that is coded again
+
+static relume_status check_again(const struct relume_encode_capture_params *p)
+{
+    const bool lossy = p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 || p->effort;
+    if (lossy && !p->jnd && !p->parts && !p->team && !p->learnt && !p->basis && !p->coefficients)
+        return relume_encode_check(p);
+    return log_fail(p->log, RELUME_EINVAL,
+                    "a relume file is coded again as it is; expected --psnr, --bytes-per-pixel or "
+                    "--effort, and nothing about the model");
+}
+
+static relume_status encode_again(struct encode_request *r, relume_pack *pack)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    struct again_capture a;
+    relume_status status = again_open(&a, pack, r->log);
+    r->capture = a.capture;
+    r->pack.domain = info->domain;
+    r->pack.display = info->display;
+    r->pack.writer = r->asked->writer;
+    if (!r->pack.pyramid)
+        r->pack.pyramid = info->levels ? RELUME_PYRAMID_YES : RELUME_PYRAMID_NO;
+    if (!status)
+        status = again_write(r, &a, pack);
+    if (!status) {
+        report_coder(r, a.coder);
+        report_file(r);
+    }
+    again_close(&a);
+    return status;
+}
+
+relume_status relume_encode_again(const char *path, relume_pack *pack,
+                                  struct relume_encode_result *result,
+                                  const struct relume_encode_capture_params *params)
+{
+    const struct relume_encode_capture_params p = PARAMS_WORK(relume_encode_capture_params, params);
+    struct encode_request r;
+    if (!path && !p.writer)
+        return RELUME_EINVAL;
+    relume_status status = check_again(&p);
+    request_make(&r, path, NULL, &p);
+    if (!status)
+        status = encode_again(&r, pack);
+    if (result)
+        *result = status ? (struct relume_encode_result){0} : r.result;
     return status;
 }

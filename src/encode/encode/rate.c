@@ -229,7 +229,8 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                               .groups = groups,
                               .capture = capture,
                               .p = p,
-                              .by = by},
+                              .by = by,
+                              .own = target->own},
                      .step_db = target->psnr_db > 0.0 ? USUAL_DB : USUAL_BYTES,
                      .target = *target};
     const double samples = samples_of(coder, capture);

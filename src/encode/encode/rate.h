@@ -17,6 +17,7 @@ struct rate_target {
     double psnr_db;  // of the captured images, pooled; or 0
     double bytes;    // of the words of all views
     enum relume_effort effort;
+    bool own;  // judged by what the coefficients themselves show: there are no photographs
 };
 struct rate_result {
     double psnr_db;  // as the target's

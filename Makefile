@@ -73,7 +73,7 @@ MESHES_C := src/shape/mesh/mesh_assimp.c
 # Built where OpenCV's stitching is (make deps-stitch); opened to stitch photographs
 OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/capture/multiview/stitch.cpp)
-# The program in which foreign files are read (src/core/base/helper.h); it lies beside the modules
+# The program in which foreign files are read and lossy planes coded (src/core/base/helper.h); it lies beside the modules
 HELPER_C := $(wildcard src/cli/helper/*.c)
 # The tool for all processes of an MPI launcher, built where one is (make deps-mpi); some packages
 # bring mpicc without the header
@@ -199,7 +199,7 @@ $(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
 	$(Q)$(CXX) $(MODE) -shared $(HARD_LD) -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $(HELPER): $(HELPER_C:%.c=$B/obj/%.o) $B/librelume.a | $(MODULE) $(MESHES)
 	$(call say,LD)
-	$(Q)$(LINK) $(MODE) -pthread $(call run_path) $(HARD_LD) $(FIXED) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -lm -ldl
+	$(Q)$(LINK) $(MODE) -pthread $(call run_path) $(HARD_LD) $(FIXED) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -laom -lm -ldl
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) $(FIXED) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)

@@ -24,7 +24,7 @@ site:publish"
 
 # folder of a program: private folders it may include beside its own | public headers it may include (* = all)
 rules="cli/program:core/base:base image exchange/notes pack relight/slab_set
-cli/helper:core/base image/image shape/mesh:base
+cli/helper:core/base format/lossy image/image shape/mesh:base
 cli/measure:core/base core/math core/kernel image/image shape/mesh world/stage:*
 cli:core/base cli/program:*
 cli/mpi:cli core/math:context format/team

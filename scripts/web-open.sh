@@ -79,7 +79,7 @@ own="-O2 -Wall -Wextra -Wno-unused-function -Iinclude -Isrc -DOPENS_FILES -I$dav
 parts="web/open/open.c web/open/absent.c web/core/absent.c \
     $(of src/core/base arena beside called context_create cpu infile inputs inventory json_write log memory names printable scratch thread tree) \
     $(of src/core/math base64 gram hsh hull lanczos markup sh) \
-    $(of src/image/image exr exr_sums image piz response transfer) \
+    $(of src/image/image exr exr_sums image piz piz_decode response transfer) \
     $(of src/core/kernel dot_c kernels nearest_c psf_c turn_c unpack_c) \
     $(of src/format/coder basis_dct basis_dct_resampled basis_eigen basis_hsh basis_pca basis_ptm basis_sh basis_table codes coefficients \
         coder disc harmonics mesh sums zone) $(ls src/format/coder/interpolant_*.c) \

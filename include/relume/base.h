@@ -41,6 +41,7 @@ typedef enum relume_status {
     RELUME_EIO,           // an output cannot be written
     RELUME_ESYSTEM,       // the machine lacks something: threads, a module, a GL context
     RELUME_ECANCEL,       // the progress callback asked to stop
+    RELUME_ECODER,        // the process of the AV1 coder crashed or was killed
 } relume_status;
 
 // Params structs begin with their size, which the macro of the same name fills: a library that

@@ -71,10 +71,10 @@ struct relume_encode_capture_params {
     bool no_depth;                            // leave depth out: no near lights, no views by depth
     const struct relume_books_params *books;  // codebooks instead of planes
     bool share;                               // one set of codebooks for all views
-    // Lossy: the smallest file of a PSNR (10 to 60 dB), the best file of at most that many bytes
-    // for each pixel of each view (up to 100), or the smallest file in which 99 % of the pixels of
-    // every photograph differ by less than `jnd` just noticeable differences (0.05 to 100; several
-    // files are tried). At most one of the three. Default: without loss, or by `effort`.
+    // Lossy, at most one of the three: the smallest file of a PSNR (10 to 60 dB), or the best file
+    // of at most that many bytes for each pixel of each view (up to 100), or the smallest file in
+    // which 99 % of the pixels of every photograph differ by less than `jnd` just noticeable
+    // differences (0.05 to 100; several files are tried). Default: without loss, or by `effort`.
     double psnr_db, bytes_per_pixel, jnd;
     // Write here instead of the file; temporary data in $TMPDIR
     const struct relume_writer *writer;
@@ -87,9 +87,10 @@ struct relume_encode_capture_params {
     const struct relume_team *team;  // processes that run now: each writes a part, the first joins
                                      // them
 
-    // Of lossy planes. Alone, with basis auto, the photographs choose the quality: components as in
-    // a lossless file, at least 38 dB where they reach it, and lights between the captured ones
-    // about 0.1 dB below a lossless file; with another basis it is RELUME_LOSSY_DB.
+    // Time for lossy planes. Alone, with basis auto, the photographs choose the quality: they are
+    // reproduced at 38 dB or more where a lossless file does so. Lights between them are shown
+    // about 0.1 dB worse than by a lossless file. With another basis, or where a file is coded
+    // again, the quality is RELUME_LOSSY_DB.
     enum relume_effort effort;
     bool lossless;  // without loss, which is the default, too: refused with what asks for loss
 };
@@ -166,6 +167,7 @@ struct relume_encode_result {
     double photograph_bytes;  // of the photographs' files; 0: unknown
     bool is_coarse;           // the storage asked for is too coarse for bright highlights
     struct relume_moving_report shadows, highlights;
+    bool coder_crashed;  // the file is lossless; its shadows and highlights fade
 };
 
 // Encodes `capture` into the file `path`, whole or not at all; `path` is NULL with a writer.
@@ -174,10 +176,22 @@ struct relume_encode_result {
 // writer. RELUME_EUNFIT where the capture does not suit: its shadows or highlights cannot move, its
 // lights determine fewer coefficients. An input status, RELUME_EIO, RELUME_ENOMEM, RELUME_ESYSTEM,
 // RELUME_ECANCEL.
+// libaom codes lossy planes in a process of relume-helper where that program is installed. If the
+// process crashes or is killed, a warning says so and the file becomes lossless. Parts, teams and
+// writers get RELUME_ECODER.
 // Thread-safety: a capture may be encoded by several threads at once.
 RELUME_RESULT relume_status relume_encode_capture(
     const char *path, const relume_capture *capture, struct relume_encode_result *result,
     const struct relume_encode_capture_params *params);
+
+// Writes an open relume file with lossy planes into the file `path`. The file keeps its
+// functions of light, depth, masks, levels and models of shadows and highlights; `measured.psnr_db`
+// compares with what the file itself shows under its captured lights. Of the params log, threads,
+// name, pyramid, psnr_db, bytes_per_pixel, effort and writer are used. RELUME_EINVAL for other
+// params, else as relume_encode_capture.
+RELUME_RESULT relume_status relume_encode_again(const char *path, relume_pack *pack,
+                                                struct relume_encode_result *result,
+                                                const struct relume_encode_capture_params *params);
 
 #ifdef __cplusplus
 }

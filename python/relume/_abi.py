@@ -16,6 +16,7 @@ CONSTANTS = {
     "RELUME_OK": 0, "RELUME_ENOTFOUND": 1, "RELUME_EFORMAT": 2, "RELUME_EDAMAGED": 3,
     "RELUME_ELIMIT": 4, "RELUME_EUNSUPPORTED": 5, "RELUME_EUNFIT": 6, "RELUME_EINVAL": 7,
     "RELUME_ENOMEM": 8, "RELUME_EIO": 9, "RELUME_ESYSTEM": 10, "RELUME_ECANCEL": 11,
+    "RELUME_ECODER": 12,
     "RELUME_ERROR": 0, "RELUME_WARNING": 1, "RELUME_NOTE": 2,
     "RELUME_SAMPLE_FLOAT": 0, "RELUME_SAMPLE_8": 1, "RELUME_SAMPLE_16": 2,
     "RELUME_CURVE_AUTO": 0,
@@ -91,7 +92,7 @@ struct relume_moving_report { int outcome; int lights; double faded_db, moved_db
 struct relume_encode_result { int made; void *basis; int coefficients; bool joint; int lights, views; int domain;
     struct relume_transfer display; int storage; bool lossy; struct relume_fidelity measured; double unseen_db; double quality_db; int reach;
     double jnd; double file_bytes; double bytes_per_pixel; double photograph_bytes; bool is_coarse;
-    struct relume_moving_report shadows, highlights; };
+    struct relume_moving_report shadows, highlights; bool coder_crashed; };
 struct relume_pack_info { int version; void *coder; int domain; struct relume_transfer display;
     int storage; char *compression; struct relume_geometry geometry; int slabs; void *slab;
     int width, height; int levels; int tile; int views; void *uv; void *slab_of; bool has_depth, has_mask;

@@ -108,6 +108,7 @@ _EXCEPTIONS = {
     CONSTANTS["RELUME_EIO"]: OutputError,
     CONSTANTS["RELUME_ESYSTEM"]: MachineError,
     CONSTANTS["RELUME_ECANCEL"]: Cancelled,
+    CONSTANTS["RELUME_ECODER"]: MachineError,
 }
 _MESSAGE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p)
 _PROGRESS = ctypes.CFUNCTYPE(ctypes.c_bool, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double)

@@ -7,6 +7,7 @@
 #include "encode_report.h"
 
 #include <string.h>
+#include <strings.h>
 
 struct encode_options {
     struct args args;
@@ -131,6 +132,64 @@ static const struct option options[] = {
     {0},
 };
 
+// ---------------------------------------------------------------- a file that is coded again
+
+// A folder of photographs may have such a name too.
+static bool is_relume_file(const char *path)
+{
+    relume_pack *pack = NULL;
+    const char *end = strrchr(path, '.');
+    const bool is = end && !strcasecmp(end, ".exr") && !relume_pack_open(&pack, path, NULL);
+    relume_pack_destroy(&pack);
+    return is;
+}
+
+// The options that choose a model have no part in it.
+static relume_status check_again(const struct encode_options *o)
+{
+    static const char *const used[] = {"-o",       "--psnr",    "--bytes-per-pixel",
+                                       "--effort", "--pyramid", NULL};
+    struct options_text text;
+    const relume_status status = options_text(&text, &o->args, options, used);
+    if (status || !text.text[0])
+        return status;
+    return usage_error("'%s' is a relume file, which is coded again as it is; expected --psnr, "
+                       "--bytes-per-pixel, --effort and --pyramid; found %s",
+                       o->args.input[0], text.text);
+}
+
+static relume_status encode_file_again(const struct encode_options *o,
+                                       const struct relume_encode_capture_params *params)
+{
+    const struct args *args = &o->args;
+    const char *input = args->input[0];
+    struct relume_encode_result result;
+    relume_pack *pack;
+    relume_status status = check_again(o);
+    if (!status)
+        status = relume_pack_open(&pack, input,
+                                  relume_pack_params(.log = args->log, .threads = args->threads));
+    if (status)
+        return status;
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const double bytes = (double)info->file_bytes;
+    if (!strcmp(info->compression, "av1"))
+        announce(args, RELUME_WARNING,
+                 "%s: is lossy already; coding it again loses more than coding the "
+                 "photographs once",
+                 input);
+    status = relume_encode_again(o->output, pack, &result, params);
+    if (!status && info->notes)
+        status = relume_pack_keep_notes(o->output, info->notes, args->log);
+    if (!status)
+        say_coded_again(args, &(const struct encoded_file){input, o->output, NULL, params, &result},
+                        bytes);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+// ---------------------------------------------------------------- a capture
+
 // Decoded images wait in memory up to this size, the rest of them beside the file.
 #define KEPT_BYTES ((size_t)384 << 20)
 
@@ -224,6 +283,8 @@ static relume_status encode_as_asked(const struct encode_options *o)
     struct options_text text;
     if (length && o->output[length - 1] == '/')
         return usage_error("-o: expected the name of a file, as FILE.exr; found '%s'", o->output);
+    if (is_relume_file(args->input[0]))
+        return encode_file_again(o, &params);
     relume_status status = parse_books(args, &o->books, books, &books_params);
     params.books = books ? &books_params : NULL;
     params.options = text.text;
@@ -263,7 +324,7 @@ relume_status encode_as_usual(const struct args *args, const char *capture, cons
 }
 
 const struct command command_encode = {
-    COMMAND(run_encode, "encode", "CAPTURE -o FILE.exr [OPTION ...]",
+    COMMAND(run_encode, "encode", "CAPTURE|FILE.exr -o FILE.exr [OPTION ...]",
             "compress a capture (capture.json, its folder, or a .lp file) into one relume file",
             "relume encode photos/dirs.lp -o statue.exr --basis sh --coefficients 16", 1, 1),
 };

@@ -125,7 +125,7 @@ static void describe_reach(char text[128], const struct encoded_file *f)
                  bytes == 1.0 ? "" : "s");
         break;
     default:
-        if (r->quality_db > 0.0 && !r->lossy)
+        if (r->quality_db > 0.0 && !r->lossy && !r->coder_crashed)
             hint_at_size(text, r);
     }
 }
@@ -203,6 +203,7 @@ static void print_share(const struct encoded_file *f)
 void say_encoded(const struct args *args, const struct encoded_file *f)
 {
     const struct relume_encode_result *r = f->result;
+    const bool by_jnd = f->params->jnd > 0.0 && !r->coder_crashed;
     if (r->made == RELUME_LEARNT_NOTHING) {
         print_learnt(f->input, "nothing is learnt before encoding with these options; run the same "
                                "line without --learn-only");
@@ -212,9 +213,9 @@ void say_encoded(const struct args *args, const struct encoded_file *f)
     say_highlights(args, f);
     if (f->params->learn_only)
         print_share(f);
-    else if (f->params->jnd > 0.0)
+    else if (by_jnd)
         say_jnd(args, f);
-    if (f->params->learn_only || f->params->jnd > 0.0 || r->made == RELUME_ENCODED_ELSEWHERE)
+    if (f->params->learn_only || by_jnd || r->made == RELUME_ENCODED_ELSEWHERE)
         return;
     say_census(args, f);
     if (r->made == RELUME_ENCODED_PART)
@@ -225,4 +226,16 @@ void say_encoded(const struct args *args, const struct encoded_file *f)
         announce(args, RELUME_WARNING,
                  "%s: very bright highlights: %s will ruin the picture; use --bits half", f->output,
                  storage_words(r->storage));
+}
+
+void say_coded_again(const struct args *args, const struct encoded_file *f, double bytes)
+{
+    const struct relume_encode_result *r = f->result;
+    char size[64] = "", more[128] = "";
+    if (r->file_bytes > 0.0)
+        snprintf(size, sizeof size, ", %.2f times the bytes", r->file_bytes / bytes);
+    describe_reach(more, f);
+    announce(args, RELUME_NOTE,
+             "%s: shows what %s shows at %.1f dB PSNR (differences %s), lossy%s%s", f->output,
+             f->input, r->measured.psnr_db, judgement(r->measured.psnr_db), size, more);
 }

@@ -1,10 +1,12 @@
-// main.c - relume-helper: the program in which foreign files are read (core/base/helper.h)
+// main.c - relume-helper: the program in which foreign files are read and lossy planes are coded
+// (core/base/helper.h)
 //
 // It loads a reader's module when the first file of its kind comes, and forks the processes that
-// read. It ends with the process that started it, or when nobody asked for a while.
+// work. It ends with the process that started it, or when nobody asked for a while.
 #include "core/base/channel.h"
 #include "core/base/helper.h"
 #include "core/base/module.h"
+#include "format/lossy/av1_serve.h"
 #include "image/image/picture_serve.h"
 #include "shape/mesh/mesh_serve.h"
 
@@ -22,11 +24,12 @@
 #include <unistd.h>
 
 static const struct {
-    const char *module;
+    const char *module;  // or NULL
     void (*serve)(int channel, const void *bridge);
 } kinds[] = {
     [HELPER_PICTURE] = {"oiio", picture_serve},
     [HELPER_MESH] = {"assimp", mesh_serve},
+    [HELPER_AV1] = {NULL, av1_serve},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -62,7 +65,7 @@ static int how_ended(pid_t process)
     return 0;
 }
 
-// A process that reads. It has nothing of the others: no channel to the program that starts
+// A process that works. It has nothing of the others: no channel to the program that starts
 // processes, and no core file, which would be large and has somebody's picture in it.
 static _Noreturn void serve(int kind, int channel, const void *bridge)
 {
@@ -80,9 +83,9 @@ static void start_process(struct helper_reply *reply, int kind, int channel)
     static const void *bridges[KINDS];
     if (kind < 0 || kind >= KINDS || channel < 0)
         return;
-    if (!bridges[kind])
+    if (!bridges[kind] && kinds[kind].module)
         bridges[kind] = module_open(kinds[kind].module, reply->why, &reply->error);
-    if (!bridges[kind])
+    if (!bridges[kind] && kinds[kind].module)
         return;
     const pid_t process = fork();
     if (process == 0)

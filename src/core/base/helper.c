@@ -1,4 +1,4 @@
-// helper.c - work on files that may be made to do harm: in processes of their own
+// helper.c - work that may crash: in processes of its own
 #include "core/base/helper.h"
 
 #include "core/base/channel.h"
@@ -239,11 +239,18 @@ static void drop_stale(void)
         }
 }
 
+// How many processes there may be before a second job is given to one.
+static int most_processes(enum helper_kind kind)
+{
+    enum { MOST = 16 };
+    const int cpus = relume_cpu_count();
+    return kind != HELPER_PICTURE ? INT_MAX : cpus < MOST ? cpus : MOST;
+}
+
 // The living one with the fewest jobs; NULL where another one may be made.
 static struct helper_process *least_busy(enum helper_kind kind)
 {
-    enum { MOST = 16 };
-    const int cpus = relume_cpu_count(), most = cpus < MOST ? cpus : MOST;
+    const int most = most_processes(kind);
     struct helper_process *least = NULL;
     int count = 0;
     for (struct helper_process *p = table; p; p = p->next)
@@ -259,7 +266,7 @@ static struct helper_process *process_for(enum helper_kind kind, struct helper_r
 {
     pthread_mutex_lock(&table_lock);
     drop_stale();
-    struct helper_process *p = kind == HELPER_PICTURE ? least_busy(kind) : NULL;
+    struct helper_process *p = least_busy(kind);
     if (!p && (p = new_process(kind, reply))) {
         p->next = table;
         table = p;
@@ -276,7 +283,7 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
                            const struct relume_log *log)
 {
     static const char *const what[] = {
-        [HELPER_PICTURE] = "image formats", [HELPER_MESH] = "models"};
+        [HELPER_PICTURE] = "image formats", [HELPER_MESH] = "models", [HELPER_AV1] = "AV1"};
     struct helper_reply reply;
     *job = (struct helper_job){.path = mem_text(path)};
     if (job->path && (job->process = process_for(kind, &reply)))
@@ -290,6 +297,17 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
                     what[kind], reply.why);
 }
 
+// Completes a warning that begins with the coder's name.
+static void describe_coder_end(char how[HELPER_WHY], int number, bool late)
+{
+    if (late)
+        snprintf(how, HELPER_WHY, "does not answer");
+    else if (number == SIGKILL)
+        snprintf(how, HELPER_WHY, "was killed; the machine may be short of memory");
+    else
+        snprintf(how, HELPER_WHY, "crashed (%s)", number ? strsignal(number) : "no answer");
+}
+
 // It has closed its channel, so it ends, or has; or it has not answered and is made to.
 static void find_out(struct helper_process *p, const char *path, bool late)
 {
@@ -300,7 +318,9 @@ static void find_out(struct helper_process *p, const char *path, bool late)
     p->blamed = mem_text(path);
     const int how = ask_in_turn(&reply, &order, -1) ? reply.how : 0;
     const int number = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
-    if (late)
+    if (p->kind == HELPER_AV1)
+        describe_coder_end(p->how, number, late);
+    else if (late)
         snprintf(
             p->how, HELPER_WHY,
             "its reader does not answer; it is damaged, made to keep programs waiting, or on a "
@@ -347,7 +367,7 @@ relume_status helper_ask(struct helper_job *job, const void *message, size_t siz
     return status;
 }
 
-// A model's process, and one that has ended, serve nobody any more.
+// A model's process, and one that has ended, serve no other job.
 void helper_end(struct helper_job *job)
 {
     struct helper_process *p = job->process, **at = &table;
@@ -356,7 +376,7 @@ void helper_end(struct helper_job *job)
         clock_gettime(CLOCK_MONOTONIC, &p->idle);
         while (*at != p)
             at = &(*at)->next;
-        if (p->kind != HELPER_PICTURE || atomic_load(&p->ended)) {
+        if (p->kind == HELPER_MESH || atomic_load(&p->ended)) {
             *at = p->next;
             free_process(p);
         }

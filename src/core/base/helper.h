@@ -1,4 +1,4 @@
-// helper.h - work on files that may be made to do harm: in processes of their own
+// helper.h - work that may crash: in processes of its own
 //
 // Readers of foreign formats run in relume-helper, a program beside the modules. One is started
 // for the first such file and loads what it needs once (a third of a second); then it forks
@@ -6,10 +6,14 @@
 // open anything else or to reach the network (src/cli/helper). What crashes there is one sentence
 // here.
 //
+// The coder of lossy planes runs there too. Its pictures are the program's own, so it
+// keeps the rights of the program.
+//
 // A model has a process of its own. Forking one takes 5 ms and more, so pictures share: each goes
 // to a process that has nothing open, then to a new one, and where there are as many as processors
 // to the one that has the fewest. A process works on one picture at a time, so that a crash is that
-// picture's; others that it had open are lost with it, and name it.
+// picture's; others that it had open are lost with it, and name it. Each group of sequences that is
+// coded goes to an idle process or to a new one, and leaves it idle.
 #ifndef BASE_HELPER_H
 #define BASE_HELPER_H
 
@@ -18,7 +22,7 @@
 #include <string.h>
 #include <sys/types.h>
 
-enum helper_kind { HELPER_PICTURE, HELPER_MESH };
+enum helper_kind { HELPER_PICTURE, HELPER_MESH, HELPER_AV1 };
 
 enum { HELPER_WHY = 400 };
 

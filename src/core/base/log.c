@@ -97,6 +97,7 @@ static const struct {
     [RELUME_EIO] = {"output", "output cannot be written", 3},
     [RELUME_ESYSTEM] = {"system", "the machine lacks something that is needed", 3},
     [RELUME_ECANCEL] = {"cancelled", "stopped on request", 130},
+    [RELUME_ECODER] = {"coder", "the process that codes lossy planes has ended", 3},
 };
 
 static bool is_known(relume_status status)

@@ -69,12 +69,13 @@ static relume_status find_words(struct coding *c, struct relume_fidelity *report
     double allowed = 0.0;
     relume_status status = find_allowed(&allowed, c);
     *report = fidelity_mean(f->report, f->views);
-    const double fit = report->fit_rms;
+    const double fit = f->again ? 0.0 : report->fit_rms;  // a file is its own measure
     const struct rate_target target = {.psnr_db = f->p->psnr_db,
                                        .least_db = f->p->least_db,
                                        .bytes = allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0)),
                                        .effort = f->p->effort,
-                                       .fit = fit * fit};
+                                       .fit = fit * fit,
+                                       .own = f->again != NULL};
     if (!status)
         status = rate_encode(f->words, &result, f->coefficients, f->coder, &c->groups, f->capture,
                              &target, f->encode, c->team ? &by : NULL);
@@ -82,8 +83,10 @@ static relume_status find_words(struct coding *c, struct relume_fidelity *report
         return status;
     c->effort = result.effort;
     const double all = pow(10.0, -result.psnr_db / 20.0);
+    const double before = report->store_rms;  // of the file that is coded again
     report->psnr_db = result.psnr_db;
-    report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
+    report->store_rms = report->steps_rms =
+        f->again ? hypot(all, before) : sqrt(fmax(all * all - fit * fit, 0.0));
     const double left = allowed > 0.0 ? allowed - result.bytes : (double)INFINITY;
     return c->leveled ? coding_find_levels(c, left) : RELUME_OK;
 }
@@ -106,7 +109,9 @@ relume_status encode_coded(struct contents *f, const char *path, struct relume_f
         status = make_groups(&c);
     if (!status)
         status = coded_rows_create(&c.rows, f, &c.groups, c.team);
-    if (!status)
+    if (!status && f->again)
+        coded_rows_settle(&c.rows);
+    else if (!status)
         status = coded_rows_find_steps(&c.rows);
     if (!status)
         status = coding_each_view(&c, c.own, coding_load_extras);

@@ -257,3 +257,16 @@ relume_status coded_rows_find_steps(struct coded_rows *r)
     r->settled = !status;
     return status ? status : set_header_view(r);
 }
+
+void coded_rows_settle(struct coded_rows *r)
+{
+    struct contents *f = r->f;
+    const size_t planes = (size_t)relume_coder_info(f->coder)->planes;
+    for (int i = 0; i < f->views; i++)
+        for (size_t b = 0; b < (size_t)f->coefficients[i]->bands * planes; b++)
+            r->total[b % planes] = range_join(r->total[b % planes], f->coefficients[i]->band[b]);
+    for (int i = 0; i < f->views; i++)
+        coefficients_choose_steps(f->coefficients[i], r->total, r->masked, f->encode->step);
+    memset(r->there, true, (size_t)f->views * (size_t)r->most);
+    r->settled = true;
+}

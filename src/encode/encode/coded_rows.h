@@ -41,5 +41,7 @@ relume_status coded_rows_load_view(struct coded_rows *r, int view);
 // tiles of its share. The first view has coefficients then, perhaps without any rows: a header says
 // by it what the planes are like. Errors as above, and of sharing.
 relume_status coded_rows_find_steps(struct coded_rows *r);
+// The steps where all views have all coefficients already.
+void coded_rows_settle(struct coded_rows *r);
 
 #endif

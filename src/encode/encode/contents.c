@@ -153,7 +153,7 @@ void contents_describe(struct relume_pack_contents *contents, const struct conte
         .view = f->view,
         .preview = relume_pack_preview,
         .preview_user = contents,
-        .provenance = manifest->provenance,
+        .provenance = f->again ? relume_pack_info(f->again)->provenance : manifest->provenance,
     };
 }
 

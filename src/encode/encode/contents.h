@@ -25,8 +25,9 @@ struct contents {
     struct lossy_words *words;                   // [views]
     struct relume_fidelity *report;              // [views]
     int views;
-    int first, end;  // those that are encoded
-    int row, rows;   // of one view alone; 0 rows: all
+    int first, end;      // those that are encoded
+    int row, rows;       // of one view alone; 0 rows: all
+    relume_pack *again;  // the file that has the coefficients, of which there are no photographs
 };
 
 // `f` begins with the first four. RELUME_ENOMEM.

@@ -5,9 +5,9 @@
 #include <relume/encode/pack_encode.h>
 
 // Keeps in *out the better of the components that are there and `pictures`, at the quality or bytes
-// of `p`, by a model of both (rate_model.h); the other is destroyed, on failure both. Components
-// miss photographs by `fit` before coding: mean squared error of display values. Shared by the
-// members of p->team. Errors as relume_project and rate_model_curve, and of sharing.
+// of `p`. A model of both decides (rate_model.h). The other is destroyed, on failure both.
+// Components miss photographs by `fit` before coding: mean squared error of display values. Shared
+// by the members of p->team. Errors as relume_project and rate_model_curve, and of sharing.
 relume_status contest_keep_better(relume_coder **out, relume_coder *pictures, double fit,
                                   const relume_capture *capture,
                                   const struct relume_pack_encode_params *p,

@@ -62,7 +62,7 @@ static relume_status judge_books(const struct contents *f)
         const struct shelf shelf = {f->view[i].books, f->index + i * RELUME_MOST_BOOKS,
                                     (size_t)relume_capture_width(f->capture)};
         status = encode_judge(&f->report[i].psnr_db, f->coefficients[i], f->capture, i,
-                              &(const struct encode_values){shelf_row, &shelf}, f->encode);
+                              &(const struct encode_values){shelf_row, &shelf, false}, f->encode);
     }
     return status;
 }

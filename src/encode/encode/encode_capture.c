@@ -2,13 +2,16 @@
 //
 //     check -> shadows? -> learn the coder -> highlights? -> write -> report
 //
-// A file whose JND is asked for is several of these (jnd_search.c).
+// A file whose JND is asked for is several of these (jnd_search.c). Where libaom crashes, the file
+// is encoded once more without it (crash.h).
 #include <relume/encode.h>
 
 #include "capture/manifest/reflectance_table.h"
 #include "core/base/memory.h"
 #include "core/base/outfile.h"
 #include "core/base/params.h"
+#include "encode/encode/again.h"
+#include "encode/encode/crash.h"
 #include "encode/encode/jnd_search.h"
 #include "encode/encode/lossy_choice.h"
 #include "encode/encode/moving.h"
@@ -323,6 +326,35 @@ static relume_status encode_once(const char *path, const relume_capture *capture
     return status;
 }
 
+static relume_status encode_as_asked(const char *path, const relume_capture *capture,
+                                     struct relume_encode_result *result,
+                                     const struct relume_encode_capture_params *p)
+{
+    return p->jnd > 0.0 ? jnd_search(path, capture, result, p, encode_once)
+                        : encode_once(path, capture, 0.0, result, p);
+}
+
+// Parts agree about how they are coded, and a writer may have got bytes already: these fail.
+static relume_status encode_safely(const char *path, const relume_capture *capture,
+                                   struct relume_encode_result *result,
+                                   const struct relume_encode_capture_params *p)
+{
+    struct crash_watch watch;
+    struct relume_encode_capture_params attempt = *p;
+    attempt.log = crash_watch_begin(&watch, p->log);
+    const relume_status status = encode_as_asked(path, capture, result, &attempt);
+    const bool crashed = status == RELUME_ECODER && !p->parts && !p->team && !p->writer;
+    crash_watch_end(&watch, !crashed);
+    if (!crashed)
+        return status;
+    crash_say(&watch, p);
+    attempt = crash_params(p);
+    *result = (struct relume_encode_result){0};
+    const relume_status again = encode_as_asked(path, capture, result, &attempt);
+    result->coder_crashed = true;
+    return again;
+}
+
 relume_status relume_encode_capture(const char *path, const relume_capture *capture,
                                     struct relume_encode_result *result,
                                     const struct relume_encode_capture_params *params)
@@ -333,11 +365,67 @@ relume_status relume_encode_capture(const char *path, const relume_capture *capt
         return RELUME_EINVAL;
     relume_status status = relume_encode_check(&p);
     if (!status)
-        status = p.jnd > 0.0 ? jnd_search(path, capture, &own, &p, encode_once)
-                             : encode_once(path, capture, 0.0, &own, &p);
+        status = encode_safely(path, capture, &own, &p);
     if (status)
         own = (struct relume_encode_result){0};
     if (result)
         *result = own;
+    return status;
+}
+
+// ---------------------------------------------------------------- a file that is coded again
+
+static relume_status check_again(const struct relume_encode_capture_params *p)
+{
+    const bool lossy = p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 || p->effort;
+    if (lossy && !p->jnd && !p->parts && !p->team && !p->learnt && !p->basis && !p->coefficients)
+        return relume_encode_check(p);
+    return log_fail(p->log, RELUME_EINVAL,
+                    "a relume file is coded again as it is; expected --psnr, --bytes-per-pixel or "
+                    "--effort, and nothing about the model");
+}
+
+static relume_status encode_again(struct encode_request *r, relume_pack *pack)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    struct again_capture a;
+    relume_status status = again_open(&a, pack, r->log);
+    r->capture = a.capture;
+    r->pack.domain = info->domain;
+    r->pack.display = info->display;
+    r->pack.writer = r->asked->writer;
+    if (r->is_open) {  // no photographs say how good it is to be
+        r->is_open = false;
+        r->pack.psnr_db = r->result.quality_db = RELUME_LOSSY_DB;
+        r->pack.least_db = 0.0;
+    }
+    if (!r->pack.pyramid)
+        r->pack.pyramid = info->levels ? RELUME_PYRAMID_YES : RELUME_PYRAMID_NO;
+    if (!status)
+        status = again_write(r, &a, pack);
+    if (!status) {
+        report_coder(r, a.coder);
+        report_file(r);
+    }
+    again_close(&a);
+    return status;
+}
+
+relume_status relume_encode_again(const char *path, relume_pack *pack,
+                                  struct relume_encode_result *result,
+                                  const struct relume_encode_capture_params *params)
+{
+    const struct relume_encode_capture_params p = PARAMS_WORK(relume_encode_capture_params, params);
+    struct encode_request r;
+    if (!path && !p.writer)
+        return RELUME_EINVAL;
+    relume_status status = check_again(&p);
+    request_make(&r, path, NULL, &p);
+    if (!status)
+        status = encode_again(&r, pack);
+    if (status)
+        r.result = (struct relume_encode_result){0};
+    if (result)
+        *result = r.result;
     return status;
 }

@@ -283,7 +283,8 @@ relume_status rate_encode(struct lossy_words *words, struct rate_result *result,
                               .groups = groups,
                               .capture = capture,
                               .p = p,
-                              .by = by},
+                              .by = by,
+                              .own = target->own},
                      .target = *target};
     const double samples = samples_of(coder, capture);
     struct av1_effort *effort = &result->effort;

@@ -14,6 +14,7 @@ struct rate_target {
     double bytes;     // of the words of all views, where psnr_db is set at most; 0: any
     enum relume_effort effort;
     double fit;  // mean squared error of display values before coding
+    bool own;    // judged by what the coefficients themselves show: there are no photographs
 };
 struct rate_result {
     double psnr_db;  // as the target's

@@ -148,7 +148,8 @@ static relume_status judge_view(struct encode_square *square, const struct trial
     relume_status status = now.codes ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = encode_judge_tiles(square, c, plan->capture, plan->first + view, tiles,
-                                    &(const struct encode_values){shown_row, &shown}, plan->p);
+                                    &(const struct encode_values){shown_row, &shown, plan->own},
+                                    plan->p);
     mem_free(order);
     mem_free(now.codes);
     return status ? status : now.status;

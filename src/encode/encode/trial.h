@@ -27,6 +27,7 @@ struct trial_plan {
     const struct rate_team *by;  // or NULL
     int tried;                   // of the groups, evenly spread
     enum av1_preset_number preset;
+    bool own;  // as rate_target
 };
 
 // Results of a quantiser. Zeroed: not tried.

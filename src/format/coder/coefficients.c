@@ -368,6 +368,48 @@ relume_status relume_coefficients_keep(relume_coefficients **out, const struct r
     return status;
 }
 
+// A band of rows: values[planes][rows][x], as many numbers that wait.
+static relume_status take_band(relume_coefficients *c, const struct relume_codes *codes, int row,
+                               float *values, char *waiting)
+{
+    const int rows = c->info.height - row < BAND_ROWS ? c->info.height - row : BAND_ROWS;
+    const size_t width = (size_t)c->info.width, n = width * (size_t)rows;
+    const size_t planes = (size_t)c->info.planes, wait = coefficients_waiting(c);
+    for (size_t p = 0; p < planes; p++) {
+        relume_codes_plane(codes, (int)p, (size_t)row * width, n, values);
+        c->band[(size_t)(row / BAND_ROWS) * planes + p] = range_settle(range_of(values, n));
+        for (size_t y = 0; y < (size_t)rows; y++)
+            coefficients_wait(c, (int)p, row, values + y * width, width,
+                              waiting + (y * planes + p) * width * wait);
+    }
+    return scratch_write(c->fd, waiting, planes * n * wait, coefficients_offset(c, row))
+               ? RELUME_OK
+               : RELUME_EIO;
+}
+
+relume_status coefficients_take(relume_coefficients **out, const relume_coder *coder,
+                                const struct relume_codes *codes,
+                                const struct relume_project_params *p)
+{
+    const size_t n = (size_t)BAND_ROWS * (size_t)codes->width;
+    const size_t planes = (size_t)relume_coder_info(coder)->planes;
+    float *values = mem_array(n, sizeof *values);
+    char *waiting = mem_array(planes * n, sizeof(float));
+    relume_status status = coefficients_create(out, coder, codes->width, codes->height, p);
+    if (!status && (!values || !waiting))
+        status = RELUME_ENOMEM;
+    for (int row = 0; !status && row < codes->height; row += BAND_ROWS)
+        status = take_band(*out, codes, row, values, waiting);
+    if (status == RELUME_EIO)
+        status = log_fail(p->log, RELUME_EIO, "%s: no room for temporary data; %s",
+                          p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
+    mem_free(values);
+    mem_free(waiting);
+    if (status)
+        relume_coefficients_destroy(out);
+    return status;
+}
+
 struct relume_fidelity relume_coefficients_report(const relume_coefficients *coefficients)
 {
     return coefficients->report;

@@ -97,6 +97,11 @@ relume_status project_some_rows(relume_coefficients **out, const relume_coder *c
 // theirs alone. As above.
 relume_status project_more_rows(relume_coefficients *c, const relume_capture *capture, int view,
                                 int row, int rows, const struct relume_project_params *p);
+// The planes of `coder` that `codes` have, perhaps beside others, wait as if they had been encoded;
+// steps are not chosen. RELUME_EIO, RELUME_ENOMEM.
+relume_status coefficients_take(relume_coefficients **out, const relume_coder *coder,
+                                const struct relume_codes *codes,
+                                const struct relume_project_params *p);
 // All rows wait in `c`, its bands and `some` are those of all of them: choose the steps and fill in
 // the report. `display` is the curve of the domain `p->domain`, which is not AUTO. RELUME_EIO,
 // RELUME_ENOMEM.
@@ -133,6 +138,7 @@ struct relume_fidelity fidelity_mean(const struct relume_fidelity *view, int vie
 struct encode_values {
     void (*row)(const void *user, int row, float *planes, size_t stride);
     const void *user;
+    bool own;  // judged by what the view's own coefficients show, not by images
 };
 // How well they reproduce the captured images, as `relume eval` measures it.
 // The PSNR of a report, on its rows. The images are read again. An input status, RELUME_ENOMEM,

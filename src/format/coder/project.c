@@ -34,6 +34,7 @@ struct encoding {
     float *samples;              // [lights][rows][x][3], with `near`
     float *own;                  // the same as pixels really saw them
     float *values;               // [planes][rows][x]
+    float *truth;                // likewise, what they are judged by where there is no table
     struct range *chunk;         // [chunks of a band][planes]
     float *work;                 // [workers][coder_work]
     float *piece;                // [workers][4][lights][PIECE], for measuring
@@ -178,6 +179,17 @@ static float *piece_work(const struct encoding *e, int worker)
     return e->piece + (size_t)worker * 4 * (size_t)e->lights * PIECE;
 }
 
+// The samples of a piece of a row: seen[3][lights][n].
+static void take_seen(const struct encoding *e, size_t at, size_t n, float *seen)
+{
+    const size_t pixels = (size_t)e->rows * (size_t)e->width, size = (size_t)e->lights * n;
+    for (int c = 0; e->truth && c < 3; c++)
+        captured_predict(&e->captured, e->coder, c, e->truth + at, pixels, n,
+                         seen + (size_t)c * size);
+    for (size_t i = 0; !e->truth && i < (size_t)e->lights; i++)
+        relume_table_planes(e->table, (int)i, at, n, seen + i * n, size);
+}
+
 // What the basis cannot express, on a piece of a row.
 static void measure_fit(const struct encoding *e, int row, size_t first, size_t n, int worker,
                         struct measured *m, double *shown)
@@ -185,8 +197,7 @@ static void measure_fit(const struct encoding *e, int row, size_t first, size_t 
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const size_t at = (size_t)row * width + first, size = (size_t)e->lights * n;
     float *again = piece_work(e, worker), *seen = again + size;
-    for (size_t i = 0; i < (size_t)e->lights; i++)
-        relume_table_planes(e->table, (int)i, at, n, seen + i * n, size);
+    take_seen(e, at, n, seen);
     for (int c = 0; c < 3; c++) {
         captured_predict(&e->captured, e->coder, c, e->values + at, pixels, n, again);
         for (size_t i = 0; i < (size_t)e->lights; i++)
@@ -249,8 +260,8 @@ static void measure_shown(const struct encoding *e, int row, size_t first, size_
     size_t inside = 0;
     for (size_t x = 0; x < n; x++)
         inside += is_inside(&e->mask, of_view + x);
-    for (size_t i = 0; inside && i < lights; i++)
-        relume_table_planes(e->table, (int)i, at, n, seen + i * n, size);
+    if (inside)
+        take_seen(e, at, n, seen);
     for (int c = 0; inside && c < 3; c++, seen += size) {
         captured_predict(&e->captured, e->coder, c, e->values + at, pixels, n, again);
         for (size_t x = 0; inside < n && x < n; x++)
@@ -364,9 +375,27 @@ static relume_status finish_packing(struct encoding *e, const struct relume_proj
                     p->scratch ? p->scratch : "$TMPDIR", strerror(e->write_error));
 }
 
+// The values of the coefficients themselves, row by row.
+static relume_status read_truth(struct encoding *e)
+{
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    const size_t planes = (size_t)e->planes;
+    float *row = mem_array(planes, width * sizeof *row);
+    relume_status status = row ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t y = 0; !status && y < (size_t)e->rows; y++) {
+        status = coefficients_values(e->out, e->row + (int)y, e->packed, row);
+        for (size_t p = 0; !status && p < planes; p++)
+            memcpy(e->truth + p * pixels + y * width, row + p * width, width * sizeof *row);
+    }
+    mem_free(row);
+    return status;
+}
+
 static relume_status read_band(struct encoding *e)
 {
     e->rows = e->end - e->row < BAND_ROWS ? e->end - e->row : BAND_ROWS;
+    if (e->truth)
+        return read_truth(e);
     return e->near ? relume_table_read_near(e->table, e->rows, e->samples, e->own)
                    : relume_table_fetch(e->table, e->rows);
 }
@@ -646,6 +675,7 @@ static void free_encoder(struct encoding *e)
     mem_free(e->samples);
     mem_free(e->own);
     mem_free(e->values);
+    mem_free(e->truth);
     mem_free(e->chunk);
     mem_free(e->work);
     mem_free(e->piece);
@@ -926,7 +956,7 @@ static int rows_apart(size_t pixels)
 // To read the images from `row` on, and to compare them.
 static relume_status begin_judging(struct encoding *e, relume_coefficients *c,
                                    const relume_capture *capture, int view,
-                                   const struct encode_tiles *tiles,
+                                   const struct encode_tiles *tiles, bool own,
                                    const struct relume_project_params *p)
 {
     relume_status status = begin(e, c->info.coder, capture, view, p);
@@ -941,6 +971,10 @@ static relume_status begin_judging(struct encoding *e, relume_coefficients *c,
     }
     if (!status)
         status = alloc_encoder(e, capture);
+    if (!status && own) {
+        e->truth = mem_array((size_t)e->planes * BAND_ROWS, (size_t)e->width * sizeof *e->truth);
+        return e->truth ? RELUME_OK : RELUME_ENOMEM;
+    }
     if (!status)
         status = open_table(e, capture, view, p);
     return status ? status : relume_table_skip(e->table, e->row);
@@ -958,7 +992,7 @@ relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume
                            const struct relume_project_params *p)
 {
     struct encoding e;
-    relume_status status = begin_judging(&e, c, capture, view, NULL, p);
+    relume_status status = begin_judging(&e, c, capture, view, NULL, values->own, p);
     for (; !status && e.row < e.end; e.row += BAND_ROWS) {
         status = read_band(&e);
         if (!status) {
@@ -1006,7 +1040,7 @@ relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients 
 {
     struct encoding e;
     memset(out, 0, (size_t)(tiles->end - tiles->first) * sizeof *out);
-    relume_status status = begin_judging(&e, c, capture, view, tiles, p);
+    relume_status status = begin_judging(&e, c, capture, view, tiles, values->own, p);
     for (; !status && e.row < e.end; e.row += BAND_ROWS) {
         status = read_band(&e);
         if (!status) {

@@ -1,7 +1,6 @@
 // av1_write.c - the one place that knows libaom
-#include "format/lossy/av1.h"
+#include "format/lossy/av1_writer.h"
 
-#include "core/base/log.h"
 #include "core/base/memory.h"
 
 #include <aom/aom_encoder.h>
@@ -34,15 +33,14 @@ const struct av1_preset av1_presets[AV1_PRESETS] = {
     [AV1_REALTIME_10] = {"realtime 10, 8 bits", AV1_REALTIME, 10, 8, false},
 };
 
-struct group {
+struct av1_writer {
     aom_codec_ctx_t codec;
     aom_codec_enc_cfg_t config;
     aom_image_t *picture;
-    struct av1_bytes *out;  // [members]
-    const struct av1_shape *shape;
-    const struct av1_effort *effort;
+    struct av1_bytes out[AV1_MOST_MEMBERS];
+    struct av1_shape shape;
     const struct av1_preset *preset;
-    int members;
+    int members, quantiser;
     long coded;  // pictures so far
 };
 
@@ -52,7 +50,7 @@ int av1_most_members(int pictures)
 }
 
 // What others are predicted from is finer: the more of them, the more it is worth.
-static int finer(const struct group *g)
+static int finer(const struct av1_writer *g)
 {
     const int worth = 4 + g->members / 2;
     return g->members == 1 ? 0 : worth < 12 ? worth : 12;
@@ -97,11 +95,10 @@ static int coarser(int quantiser, int times, int bits)
 }
 
 // Every picture has the whole step below or above, so that their mean is the quantiser.
-static bool set_step(struct group *g, int picture, int member)
+static bool set_step(struct av1_writer *g, int picture, int member, int times)
 {
     static const int above[AV1_STEPS] = {0, 2, 1, 3};
-    const int times = g->shape->halved ? g->shape->halved[picture] : 0;
-    const int q = coarser(g->effort->quantiser, times, g->preset->bits);
+    const int q = coarser(g->quantiser, times, g->preset->bits);
     int step = (q + above[picture % AV1_STEPS]) / AV1_STEPS;
     step -= member ? 0 : finer(g);
     step = step < FINEST_STEP ? FINEST_STEP : step > LAST ? LAST : step;
@@ -112,11 +109,11 @@ static bool set_step(struct group *g, int picture, int member)
 
 // Which slots a picture is predicted from, and which one it takes. All seven names are of these,
 // since a picture's head is read by what all of them hold.
-static bool set_slots(struct group *g, int picture, int member)
+static bool set_slots(struct av1_writer *g, int picture, int member)
 {
     static const int name[REFERENCES] = {0, 3, 6, 1, 4, 2, 5};  // last, golden, altref, ...
     const int now = picture % FIRST_SLOTS, before = 1 - now, own = FIRST_SLOTS + member - 1;
-    const bool begun = picture > 0, keeps = g->shape->pictures > 1;
+    const bool begun = picture > 0, keeps = g->shape.pictures > 1;
     const int of_first[] = {before, now}, of_other[] = {begun ? own : now, now, before};
     const int *slot = member ? of_other : of_first;
     const int known = !member ? (picture > 1 ? 2 : 1) : begun ? 3 : 1;
@@ -131,7 +128,7 @@ static bool set_slots(struct group *g, int picture, int member)
            !aom_codec_control(&g->codec, AV1E_SET_SVC_REF_FRAME_CONFIG, &c);
 }
 
-static bool control(struct group *g)
+static bool control(struct av1_writer *g)
 {
     const int content = g->preset->screen ? AOM_CONTENT_SCREEN : AOM_CONTENT_DEFAULT;
     return !aom_codec_control(&g->codec, AOME_SET_CPUUSED, g->preset->speed) &&
@@ -141,10 +138,10 @@ static bool control(struct group *g)
            !aom_codec_control(&g->codec, AV1E_SET_DELTAQ_MODE, 0);
 }
 
-static bool begin(struct group *g, int threads)
+static bool begin(struct av1_writer *g, int threads)
 {
     aom_codec_iface_t *av1 = aom_codec_av1_cx();
-    const bool grey = g->shape->components == 1;
+    const bool grey = g->shape.components == 1;
     static const unsigned usage[] = {[AV1_GOOD] = AOM_USAGE_GOOD_QUALITY,
                                      [AV1_INTRA] = AOM_USAGE_ALL_INTRA,
                                      [AV1_REALTIME] = AOM_USAGE_REALTIME};
@@ -152,8 +149,8 @@ static bool begin(struct group *g, int threads)
     if (aom_codec_enc_config_default(av1, &g->config, usage[g->preset->usage]))
         return false;
     aom_codec_enc_cfg_t c = g->config;
-    c.g_w = (unsigned)g->shape->width;
-    c.g_h = (unsigned)g->shape->height;
+    c.g_w = (unsigned)g->shape.width;
+    c.g_h = (unsigned)g->shape.height;
     c.g_profile = bits > 10 ? 2 : grey ? 0 : 1;
     c.g_bit_depth = (aom_bit_depth_t)bits;
     c.g_input_bit_depth = (unsigned)bits;
@@ -218,14 +215,12 @@ static bool append(struct av1_bytes *to, const void *from, size_t size)
     return true;
 }
 
-static bool code(struct group *g, const uint16_t *samples, int picture, int member)
+static bool code(struct av1_writer *g, const uint16_t *samples, int picture, int member, int halved)
 {
-    const size_t size =
-        (size_t)g->shape->components * (size_t)g->shape->width * (size_t)g->shape->height;
     const aom_codec_cx_pkt_t *p;
     aom_codec_iter_t at = NULL;
-    fill(g->picture, samples + (size_t)picture * size, g->shape);
-    if (!set_step(g, picture, member) || !set_slots(g, picture, member) ||
+    fill(g->picture, samples, &g->shape);
+    if (!set_step(g, picture, member, halved) || !set_slots(g, picture, member) ||
         aom_codec_encode(&g->codec, g->picture, g->coded++, 1, 0))
         return false;
     while ((p = aom_codec_get_cx_data(&g->codec, &at)))
@@ -235,35 +230,50 @@ static bool code(struct group *g, const uint16_t *samples, int picture, int memb
     return true;
 }
 
-static bool encode_group(struct group *g, const uint16_t *const *samples)
+static relume_status status_of(const struct av1_writer *g, bool done)
 {
-    for (int i = 0; i < g->shape->pictures; i++)
-        for (int m = 0; m < g->members; m++)
-            if (!code(g, samples[m], i, m))
-                return false;
-    return true;
+    const bool memory = g->codec.err == AOM_CODEC_OK || g->codec.err == AOM_CODEC_MEM_ERROR;
+    return done ? RELUME_OK : memory ? RELUME_ENOMEM : RELUME_ESYSTEM;
 }
 
-relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, int members,
-                         const struct av1_shape *shape, const struct av1_effort *effort,
-                         int threads, const struct relume_log *log)
+relume_status av1_writer_open(av1_writer **out, const struct av1_shape *shape, int members,
+                              const struct av1_effort *effort, int threads)
 {
-    struct group g = {.out = out,
-                      .shape = shape,
-                      .effort = effort,
-                      .preset = &av1_presets[effort->preset],
-                      .members = members};
-    memset(out, 0, (size_t)members * sizeof *out);
-    const bool done = begin(&g, threads) && encode_group(&g, samples);
-    const bool memory = g.codec.err == AOM_CODEC_OK || g.codec.err == AOM_CODEC_MEM_ERROR;
-    relume_status status = done ? RELUME_OK : RELUME_ENOMEM;
-    if (!done && !memory)
-        status = log_fail(log, RELUME_ESYSTEM, "libaom: %s", aom_codec_error(&g.codec));
-    aom_codec_destroy(&g.codec);
-    aom_img_free(g.picture);
-    for (int m = 0; status && m < members; m++) {
-        mem_free(out[m].byte);
-        out[m] = (struct av1_bytes){0};
-    }
-    return status;
+    av1_writer *g = *out = mem_zeroed(1, sizeof *g);
+    if (!g)
+        return RELUME_ENOMEM;
+    g->shape = *shape;
+    g->preset = &av1_presets[effort->preset];
+    g->members = members;
+    g->quantiser = effort->quantiser;
+    return status_of(g, begin(g, threads));
+}
+
+relume_status av1_writer_add(av1_writer *w, const uint16_t *samples, int picture, int member,
+                             int halved)
+{
+    return status_of(w, code(w, samples, picture, member, halved));
+}
+
+struct av1_bytes *av1_writer_bytes(av1_writer *w, int member)
+{
+    return &w->out[member];
+}
+
+const char *av1_writer_error(av1_writer *w)
+{
+    return w ? aom_codec_error(&w->codec) : "";
+}
+
+void av1_writer_destroy(av1_writer **writer)
+{
+    av1_writer *w = *writer;
+    if (!w)
+        return;
+    aom_codec_destroy(&w->codec);
+    aom_img_free(w->picture);
+    for (int m = 0; m < w->members; m++)
+        mem_free(w->out[m].byte);
+    mem_free(w);
+    *writer = NULL;
 }

@@ -42,7 +42,7 @@ static void take_sample(const struct mosaic *m, size_t to, float value, float wh
             65535.0f * relume_transfer_encode(coded, fminf(fmaxf(value / white, 0.0f), 1.0f)));
 }
 
-// A row of the mosaic under a light; `row`: of those fetched last.
+// A row of the mosaic under a light, among those fetched last.
 static void take_row(const struct mosaic *m, const struct taking *t, int light, int y, int row,
                      int width)
 {

@@ -4,7 +4,6 @@
 // make vector code of both without reordering.
 #include "material/maps/fit.h"
 
-#include "core/kernel/clones.h"
 #include "core/math/scalar.h"
 
 static const float DARKER = 0.12f, BRIGHTER = 0.2f;  // residuals, coded, that count a quarter
@@ -68,7 +67,7 @@ static inline struct judged judge(float residual, float cosine, float clipped, f
 }
 
 // One round of reweighted least squares of one channel.
-CLONED_FOR_AVX2 static float refit(float colour, const struct look *k, int c, float wide)
+static float refit(float colour, const struct look *k, int c, float wide)
 {
     struct lanes top = {{0}}, bottom = {{0}};
     for (int first = 0; first < k->lights; first += CHUNK) {
@@ -90,7 +89,7 @@ CLONED_FOR_AVX2 static float refit(float colour, const struct look *k, int c, fl
     return found < 0.0f ? 0.0f : found > 1.0f ? 1.0f : found;
 }
 
-CLONED_FOR_AVX2 static float loss_of(const float colour[3], const struct look *k, float wide)
+static float loss_of(const float colour[3], const struct look *k, float wide)
 {
     struct lanes sum = {{0}}, count = {{0}};
     for (int c = 0; c < 3; c++)
@@ -175,8 +174,8 @@ struct slopes {
     struct lanes aa, ab, bb, a, b;
 };
 
-CLONED_FOR_AVX2 static void add_lights(struct slopes *s, const struct look *k,
-                                       const struct look beside[2], float colour, int c, float wide)
+static void add_lights(struct slopes *s, const struct look *k, const struct look beside[2],
+                       float colour, int c, float wide)
 {
     for (int first = 0; first < k->lights; first += CHUNK) {
         const struct part p = part_of(k, c, first), a = part_of(&beside[0], c, first),

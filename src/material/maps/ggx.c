@@ -1,8 +1,6 @@
 // ggx.c - the reflectance of glTF 2.0 for one pixel under many lights
 #include "material/maps/ggx.h"
 
-#include "core/kernel/clones.h"
-
 #include <stddef.h>
 
 static const float LEAST_EYE = 1e-3f;  // cosine; normals from noise may look away
@@ -54,7 +52,7 @@ static float dot(const float a[3], const float b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-CLONED_FOR_AVX2 void look_turn(const struct look *k, const float n[3], float roughness)
+void look_turn(const struct look *k, const float n[3], float roughness)
 {
     const float rough = roughness > GGX_LEAST_ROUGHNESS ? roughness : GGX_LEAST_ROUGHNESS;
     const float alpha = rough * rough, a2 = alpha * alpha, rest = 1.0f - a2;
@@ -73,7 +71,7 @@ CLONED_FOR_AVX2 void look_turn(const struct look *k, const float n[3], float rou
     }
 }
 
-CLONED_FOR_AVX2 void look_gloss(const struct look *k, const struct gloss *g)
+void look_gloss(const struct look *k, const struct gloss *g)
 {
     const float f90 = gloss_f90(g->f0), f0 = g->f0, rest = f90 - f0;
     const float *restrict fifth = k->fifth, *restrict lobe = k->lobe, *restrict cosine = k->cosine;

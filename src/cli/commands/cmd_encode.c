@@ -153,8 +153,8 @@ static relume_status check_again(const struct encode_options *o)
     const relume_status status = options_text(&text, &o->args, options, used);
     if (status || !text.text[0])
         return status;
-    return usage_error("'%s' is a relume file, which is coded again as it is; expected --psnr, "
-                       "--bytes-per-pixel, --effort and --pyramid; found %s",
+    return usage_error("'%s' is a relume file, which takes --psnr, --bytes-per-pixel, --effort and "
+                       "--pyramid; found %s",
                        o->args.input[0], text.text);
 }
 

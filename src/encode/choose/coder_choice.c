@@ -356,6 +356,9 @@ static relume_status choose_coder(struct choice *choice, bool asked)
     const int limit = asked ? MOST_ASKED : MOST;
     const int most = 3 * lights < limit ? 3 * lights : limit;
     const int usual = 3 * lights < USUAL ? 3 * lights : USUAL;
+    // Of lossy planes more components are nearly free but for their functions in the header.
+    const bool lossy = choice->encode.step == RELUME_STEP_HALVED;
+    const int least = !asked ? usual : lossy ? smaller_of(lights, USUAL) : 1;
     relume_status status = make_coder(choice, fixed ? fixed : usual);
     choice->usual_unseen = choice->unseen;
     const bool may = choice->encode.domain == RELUME_DOMAIN_AUTO &&
@@ -366,7 +369,7 @@ static relume_status choose_coder(struct choice *choice, bool asked)
         return status;
     if (choice->own < choice->quality)
         status = make_longer(choice, most);
-    const int count = status ? 0 : enough(choice, asked ? 1 : usual);
+    const int count = status ? 0 : enough(choice, least);
     if (status || count == choice->coder->info.coefficients)
         return status;
     keep_parameters(choice);

@@ -8,6 +8,7 @@
 #include "format/team/array.h"
 
 #include <math.h>
+#include <string.h>
 
 // Rows of the middle view that are looked at.
 enum { ROWS = 64 };
@@ -30,9 +31,9 @@ struct contest {
     const relume_capture *capture;
     const struct relume_pack_encode_params *p;
     const struct relume_project_params *encode;
-    bool own;  // this member looks
     struct rate_curve curve[2];
-    struct team_array made;
+    int member;
+    struct rate_curve made[2];  // by the first member, for all
 };
 
 static double pixels_of(const relume_capture *capture)
@@ -71,8 +72,8 @@ static relume_status look(struct rate_curve *out, const relume_coder *coder,
 static relume_status begin_look(void *context, int member)
 {
     struct contest *c = context;
-    c->own = member == 0;
-    c->made.size = c->own ? sizeof c->curve : 0;
+    c->member = member;
+    memset(c->made, 0, sizeof c->made);
     return RELUME_OK;
 }
 
@@ -80,14 +81,16 @@ static relume_status look_at_both(void *context)
 {
     struct contest *c = context;
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && c->own && i < 2; i++)
-        status = look(&c->curve[i], c->coder[i], c);
+    for (int i = 0; !status && c->member == 0 && i < 2; i++)
+        status = look(&c->made[i], c->coder[i], c);
     return status;
 }
 
 static relume_status keep_curves(void *context)
 {
-    (void)context;
+    struct contest *c = context;
+    if (c->member == 0)
+        memcpy(c->curve, c->made, sizeof c->curve);
     return RELUME_OK;
 }
 
@@ -120,9 +123,9 @@ relume_status contest_keep_better(relume_coder **out, relume_coder *pictures, do
     static const struct team_work work = {begin_look, look_at_both, keep_curves};
     struct contest c = {
         .coder = {*out, pictures}, .fit = {fit, 0.0}, .capture = capture, .p = p, .encode = encode};
-    c.made = (struct team_array){c.curve, sizeof c.curve};
+    struct team_array made = {c.made, sizeof c.made};
     const relume_status status =
-        team_share(p->team, "look", &work, &c, &team_array_bytes, &c.made, p->log);
+        team_share(p->team, "look", &work, &c, &team_array_bytes, &made, p->log);
     if (!status && merit_of(&c, 1) > merit_of(&c, 0)) {
         relume_coder *const components = *out;
         *out = pictures;

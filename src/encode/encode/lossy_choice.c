@@ -10,15 +10,14 @@
 #include <math.h>
 #include <string.h>
 
-// Truncation is to cost little beside coding, which makes more components than these nearly free
-// but for their functions in the header; and a usual target where bytes are asked for.
-enum { LEAST_COMPONENTS = 27, NUGGET = 2 };
+// Truncation is to cost little beside coding; and a usual target where bytes are asked for.
 static const double SPARE_DB = 3.0, USUAL_DB = 40.0;
+
+enum { USUAL = 27, NUGGET = 2 };
 
 // Of more planes than these the pictures are not considered, nor where so few components for each
 // light are enough.
-enum { MOST_PLANES = 1200, COLOURS = 3 };
-static const int FEW = 2;
+enum { MOST_PLANES = 1200, COLOURS = 3, FEW_LIGHTS = 2 };
 
 // Nothing smooths between pictures, which may cost unseen lights this much.
 static const double LEAST_UNSEEN_DB = 0.2;
@@ -56,23 +55,8 @@ static bool may_be_pictures(const relume_coder *components, const struct relume_
     if (!info->basis->joint || COLOURS * info->lights > MOST_PLANES)
         return false;
     return !enough ||
-           ((info->coefficients > LEAST_COMPONENTS || FEW * info->coefficients > info->lights) &&
+           ((info->coefficients > USUAL || FEW_LIGHTS * info->coefficients > info->lights) &&
             decision->sharp_db > decision->unseen_db - LEAST_UNSEEN_DB);
-}
-
-// More components than the quality takes, for which only their functions cost bytes.
-static relume_status add_components(relume_coder **out, const relume_capture *capture,
-                                    const struct relume_coder_params *coder,
-                                    const struct relume_project_params *encode)
-{
-    const int lights = relume_capture_manifest(capture)->lights;
-    const int most = lights < LEAST_COMPONENTS ? lights : LEAST_COMPONENTS;
-    struct relume_coder_params more = *coder;
-    if (coder->coefficients || relume_coder_info(*out)->coefficients >= most)
-        return RELUME_OK;
-    more.coefficients = most;
-    relume_coder_destroy(out);
-    return relume_coder_learn(out, &relume_basis_pca, capture, &more, encode);
 }
 
 relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
@@ -95,8 +79,6 @@ relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
     }
     relume_status status = relume_coder_decide(out, decision, capture,
                                                is_open ? 0.0 : wanted(&p) + SPARE_DB, coder, &look);
-    if (!status && !is_open)
-        status = add_components(out, capture, coder, &lossy);
     if (status || is_open || coder->coefficients || !may_be_pictures(*out, decision, &p))
         return status;
     status = learn_pictures(&pictures, *out, capture, coder, &lossy);

@@ -42,49 +42,52 @@ static void forget(struct rate *r)
 
 struct modelling {
     struct rate *rate;
-    int bits;
-    bool own;
-    struct team_array made;
+    int bits, member;
+    struct rate_curve made;  // by the first member, for all
 };
 
 static relume_status begin_model(void *context, int member)
 {
     struct modelling *m = context;
-    m->own = member == 0;
-    m->made.size = m->own ? sizeof m->rate->curve : 0;
+    m->member = member;
+    m->made = (struct rate_curve){{0.0}, {0.0}};
     return RELUME_OK;
 }
 
-// The middle view, by the first member.
+// The middle view, whose rows may be missing so far.
 static relume_status make_model(void *context)
 {
-    const struct modelling *m = context;
+    struct modelling *m = context;
     const struct trial_plan *plan = &m->rate->plan;
     const int view = views_of(plan->groups) / 2, group = groups_with(plan->groups, view);
     relume_status status = RELUME_OK;
-    if (m->own && plan->by)
+    if (m->member > 0)
+        return RELUME_OK;
+    if (plan->by)
         status = plan->by->load(plan->by->user, group,
                                 (struct group_share){0, plan->groups->cut[group].count});
-    if (!status && m->own)
-        status = rate_model_curve(&m->rate->curve, plan->coefficients[view], 0,
-                                  relume_capture_height(plan->capture), plan->capture, m->bits,
-                                  plan->p->threads);
-    return status;
+    return status ? status
+                  : rate_model_curve(&m->made, plan->coefficients[view], 0,
+                                     relume_capture_height(plan->capture), plan->capture, m->bits,
+                                     plan->p->threads);
 }
 
 static relume_status keep_model(void *context)
 {
-    (void)context;
+    struct modelling *m = context;
+    if (m->member == 0)
+        m->rate->curve = m->made;
     return RELUME_OK;
 }
 
 static relume_status find_model(struct rate *r, int bits)
 {
     static const struct team_work work = {begin_model, make_model, keep_model};
-    struct modelling m = {.rate = r, .bits = bits, .made = {&r->curve, sizeof r->curve}};
+    struct modelling m = {.rate = r, .bits = bits};
+    struct team_array made = {&m.made, sizeof m.made};
     const relume_status status =
         team_share(r->plan.by ? r->plan.by->team : NULL, bits == 8 ? "model.8" : "model.12", &work,
-                   &m, &team_array_bytes, &m.made, r->plan.p->log);
+                   &m, &team_array_bytes, &made, r->plan.p->log);
     for (int i = 0; i < RATE_POINTS; i++)
         r->curve.bytes[i] *= views_of(r->plan.groups);
     return status;
@@ -228,7 +231,7 @@ static double samples_of(const relume_coder *coder, const relume_capture *captur
 
 static enum av1_preset_number preset_of(enum relume_effort effort, double samples)
 {
-    return effort == RELUME_EFFORT_FAST       ? AV1_REALTIME_10
+    return effort == RELUME_EFFORT_FAST       ? AV1_REALTIME_9
            : effort == RELUME_EFFORT_SMALLEST ? AV1_GOOD_4
            : samples < MOST_UNHURRIED         ? AV1_REALTIME_6
                                               : AV1_REALTIME_9;

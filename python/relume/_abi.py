@@ -85,7 +85,7 @@ struct relume_encode_capture_params { size_t struct_size; void *log; int threads
     double ridge; bool no_ridge; int domain; struct relume_transfer display; int shadows; int highlights;
     int storage; int step; int compression; int pyramid; bool no_depth; void *books; bool share;
     double psnr_db, bytes_per_pixel, jnd; void *writer; int part, parts; char *options; char *learnt; bool learn_only;
-    void *team; int effort; };
+    void *team; int effort; bool lossless; };
 struct relume_moving_report { int outcome; int lights; double faded_db, moved_db; char *expected;
     relume_status status; };
 struct relume_encode_result { int made; void *basis; int coefficients; bool joint; int lights, views; int domain;

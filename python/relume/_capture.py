@@ -279,7 +279,7 @@ class Capture(Handle):
                domain: str | None = None, bits: str | int | None = None,
                compression: str | None = None, pyramid: bool | None = None, depth: bool = True,
                psnr_db: float = 0.0, bytes_per_pixel: float = 0.0, jnd: float = 0.0,
-               effort: str | None = None,
+               effort: str | None = None, lossless: bool = False,
                shadows: bool | str | None = None, highlights: bool | str | None = None,
                threads: int = 0,
                progress: Progress | None = None) -> tuple[bytes | None, EncodeReport]:
@@ -298,7 +298,7 @@ class Capture(Handle):
             storage=parse(lib.relume_storage_parse, bits, "bits"), **domain_of(domain),
             compression=parse(lib.relume_compression_parse, compression, "compression"),
             pyramid=_PYRAMIDS[pyramid], no_depth=not depth, psnr_db=psnr_db,
-            bytes_per_pixel=bytes_per_pixel, jnd=jnd, effort=_effort(effort),
+            bytes_per_pixel=bytes_per_pixel, jnd=jnd, effort=_effort(effort), lossless=lossless,
             shadows=_moving(shadows, "shadows"),
             highlights=_moving(highlights, "highlights"),
             writer=ctypes.addressof(buffer.writer) if path is None else None)

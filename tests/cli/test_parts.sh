@@ -222,7 +222,7 @@ same 'tiles, each part by itself' whole.exr joined.exr
 rm -rf learnt ./*.part
 "$RELUME" encode wide --basis sh --coefficients 1 --psnr 10 --part 2/2 --learnt learnt -o 2.part 2>/dev/null &
 for i in $(seq 600); do
-    [ "$(ls learnt 2>/dev/null | grep -c '^words.*of2$')" -gt 1 ] && break
+    [ "$(ls learnt 2>/dev/null | grep -c '^words.*of2$')" -gt 0 ] && break
     sleep 0.05
 done
 kill -9 $! && wait $! 2>/dev/null

@@ -51,6 +51,8 @@ struct relume_pack_encode_params {
     const struct relume_image *gloss;  // the model of moving highlights, of the
                                        // only view; likewise, and without `shadows`. Default: none
     enum relume_effort effort;         // of lossy planes
+    double least_db;  // with psnr_db: what samples of more bits, which take several times as long,
+                      // are worth; default: psnr_db
 };
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \

@@ -24,7 +24,7 @@ struct encode_options {
     struct relume_transfer transfer;
     double quality, psnr, jnd, bytes_per_pixel, ridge, assume_depth;
     unsigned luminance;
-    bool robust, force, no_depth, skip_missing, repair, allow_outside;
+    bool lossless, robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
     struct crop crop;
     struct which_part part;
@@ -62,8 +62,10 @@ static const struct option options[] = {
            "compress with loss: the best quality within this many bytes per pixel of each view",
            1e-3, 100),
     NAME("--effort", effort, "E",
-         "time for lossy planes: fast, usual or smallest; alone it means --psnr 40",
+         "time for lossy planes: fast, usual, smallest; alone the photographs choose the quality",
          RELUME_EFFORT_FAST, "fast", "usual", "smallest"),
+    FLAG("--lossless", lossless,
+         "keep all that the planes hold, for measuring and editing; the default"),
     NUMBER("--quality", quality, "DB",
            "basis auto: the fewest coefficients, at most 128, that reproduce the photographs at "
            "this PSNR; default: 38",
@@ -179,6 +181,7 @@ static struct relume_encode_capture_params params_of(const struct encode_options
         .bytes_per_pixel = o->bytes_per_pixel,
         .jnd = o->jnd,
         .effort = o->effort,
+        .lossless = o->lossless,
         .part = o->part.part,
         .parts = o->part.parts,
         .learnt = o->learnt,

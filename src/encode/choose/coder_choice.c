@@ -59,6 +59,7 @@ struct choice {
     relume_coder *coder;
     double psnr[STEPS];  // by `counts`, those that the coder has
     double own, unseen;
+    double pooled;        // as `own`, of all lights together
     double usual_unseen;  // of the usual choice, which unseen lights must not fall behind
 };
 
@@ -161,10 +162,14 @@ static relume_status judge(struct choice *choice)
     if (!status)
         thread_for(choice->encode.threads, lights, judge_light, &j);
     for (int s = 0; !status && s < STEPS; s++) {
+        double square = 0.0;
         choice->psnr[s] = 0.0;
-        for (size_t i = 0; i < lights; i++)
+        for (size_t i = 0; i < lights; i++) {
             choice->psnr[s] += decibel(j.error[i][s]) / (double)lights;
+            square += j.error[i][s] / (double)lights;
+        }
         choice->own = choice->psnr[s];
+        choice->pooled = decibel(square);
         if (counts[s] >= choice->coder->info.coefficients)
             break;
     }
@@ -294,7 +299,7 @@ static void move_samples(struct choice *choice, enum relume_domain domain)
 // clearly better where the quality is reached in both.
 static relume_status try_display(struct choice *choice)
 {
-    const double own = choice->own, unseen = choice->unseen;
+    const double own = choice->own, pooled = choice->pooled, unseen = choice->unseen;
     const bool reached = own >= choice->quality;
     relume_coder *linear = choice->coder;
     const struct relume_coder_params params = choice->params;
@@ -314,6 +319,7 @@ static relume_status try_display(struct choice *choice)
     choice->coder = linear;
     choice->params = params;
     choice->own = own;
+    choice->pooled = pooled;
     choice->unseen = unseen;
     return status;
 }
@@ -350,6 +356,9 @@ static relume_status choose_coder(struct choice *choice, bool asked)
     const int limit = asked ? MOST_ASKED : MOST;
     const int most = 3 * lights < limit ? 3 * lights : limit;
     const int usual = 3 * lights < USUAL ? 3 * lights : USUAL;
+    // Of lossy planes more components are nearly free but for their functions in the header.
+    const bool lossy = choice->encode.step == RELUME_STEP_HALVED;
+    const int least = !asked ? usual : lossy ? smaller_of(lights, USUAL) : 1;
     relume_status status = make_coder(choice, fixed ? fixed : usual);
     choice->usual_unseen = choice->unseen;
     const bool may = choice->encode.domain == RELUME_DOMAIN_AUTO &&
@@ -360,7 +369,7 @@ static relume_status choose_coder(struct choice *choice, bool asked)
         return status;
     if (choice->own < choice->quality)
         status = make_longer(choice, most);
-    const int count = status ? 0 : enough(choice, asked ? 1 : usual);
+    const int count = status ? 0 : enough(choice, least);
     if (status || count == choice->coder->info.coefficients)
         return status;
     keep_parameters(choice);
@@ -588,11 +597,13 @@ static relume_status keep_picture(struct choice *choice)
     return status ? status : judge(choice);
 }
 
-// More components than usual are a matter of hard shadows; of many lights a look is enough.
+// More components than usual are a matter of hard shadows; of many lights a look is enough. Lossy
+// planes are decided on by what they take (encode/encode/contest.h).
 static bool may_be_pictures(const struct choice *choice)
 {
-    return !choice->params.coefficients && choice->manifest->lights > 1 &&
-           choice->coder->info.coefficients > USUAL && choice->manifest->lights <= MOST_LIGHTS;
+    return choice->encode.step != RELUME_STEP_HALVED && !choice->params.coefficients &&
+           choice->manifest->lights > 1 && choice->coder->info.coefficients > USUAL &&
+           choice->manifest->lights <= MOST_LIGHTS;
 }
 
 static relume_status make_pictures(struct choice *choice, enum relume_storage *storage,
@@ -613,6 +624,30 @@ static relume_status make_pictures(struct choice *choice, enum relume_storage *s
     return status ? status : choose_storage(choice, storage, bits);
 }
 
+// Lights left out as pictures show them that nothing smooths.
+static relume_status judge_sharp(struct choice *choice, double *sharp)
+{
+    const struct relume_coder_info *info = relume_coder_info(choice->coder);
+    const double unseen = choice->unseen;
+    relume_coder *components = choice->coder;
+    struct relume_coder_params p = choice->params;
+    p.coefficients = 0;
+    p.choose = false;
+    p.interpolant = info->interpolant;
+    memcpy(p.parameter, info->parameter, sizeof p.parameter);
+    p.parameter[2] = 0.0;
+    relume_status status =
+        relume_coder_create(&choice->coder, &relume_basis_table, choice->manifest->directions,
+                            choice->manifest->lights, &p);
+    if (!status)
+        status = judge_unseen(choice);
+    *sharp = choice->unseen;
+    choice->unseen = unseen;
+    relume_coder_destroy(&choice->coder);
+    choice->coder = components;
+    return status;
+}
+
 // The pictures, where they take fewer bytes than the components that reproduce them worse; those of
 // linear light as such, since light is lost where the display coding of lit and of dark is mixed.
 static relume_status consider_pictures(struct choice *choice, enum relume_storage *storage,
@@ -620,7 +655,7 @@ static relume_status consider_pictures(struct choice *choice, enum relume_storag
 {
     relume_coder *components = choice->coder;
     enum relume_storage other;
-    const double own = choice->own, unseen = choice->unseen;
+    const double own = choice->own, pooled = choice->pooled, unseen = choice->unseen;
     double theirs = 0.0;
     choice->coder = NULL;
     relume_status status = make_pictures(choice, &other, &theirs);
@@ -629,6 +664,7 @@ static relume_status consider_pictures(struct choice *choice, enum relume_storag
         relume_coder_destroy(&choice->coder);
         choice->coder = components;
         choice->own = own;
+        choice->pooled = pooled;
         choice->unseen = unseen;
         return RELUME_OK;
     }
@@ -688,8 +724,13 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         status = choose_storage(&choice, &storage, &bits);
     if (!status && bits > 0.0 && may_be_pictures(&choice))
         status = consider_pictures(&choice, &storage, bits);
+    double sharp = choice.unseen;
+    if (!status && choice.encode.step == RELUME_STEP_HALVED &&
+        relume_coder_info(choice.coder)->parameter[2] > 0.0)
+        status = judge_sharp(&choice, &sharp);
     if (decision)
-        *decision = (struct relume_decision){choice.domain, storage, choice.own, choice.unseen};
+        *decision = (struct relume_decision){choice.domain, storage,       choice.own,
+                                             choice.unseen, choice.pooled, sharp};
     if (!status) {
         *out = choice.coder;
         choice.coder = NULL;

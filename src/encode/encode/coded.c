@@ -47,7 +47,10 @@ static relume_status find_allowed(double *allowed, struct coding *c)
     const struct contents *f = c->f;
     const double pixels =
         (double)f->views * relume_capture_width(f->capture) * relume_capture_height(f->capture);
-    const relume_status status = f->p->psnr_db > 0.0 ? RELUME_OK : coding_count_rest(&c->rest, c);
+    *allowed = 0.0;
+    if (f->p->bytes_per_pixel == 0.0)
+        return RELUME_OK;
+    const relume_status status = coding_count_rest(&c->rest, c);
     *allowed = fmax((f->p->bytes_per_pixel * pixels - c->rest) / PACKED, 1.0);
     return status;
 }
@@ -65,19 +68,23 @@ static relume_status find_words(struct coding *c, struct relume_fidelity *report
     struct rate_result result;
     double allowed = 0.0;
     relume_status status = find_allowed(&allowed, c);
-    const struct rate_target target = {
-        f->p->psnr_db, allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0)), f->p->effort};
+    *report = fidelity_mean(f->report, f->views);
+    const double fit = report->fit_rms;
+    const struct rate_target target = {.psnr_db = f->p->psnr_db,
+                                       .least_db = f->p->least_db,
+                                       .bytes = allowed / (1.0 + (c->leveled ? OF_LEVELS : 0.0)),
+                                       .effort = f->p->effort,
+                                       .fit = fit * fit};
     if (!status)
         status = rate_encode(f->words, &result, f->coefficients, f->coder, &c->groups, f->capture,
                              &target, f->encode, c->team ? &by : NULL);
     if (status)
         return status;
     c->effort = result.effort;
-    *report = fidelity_mean(f->report, f->views);
-    const double all = pow(10.0, -result.psnr_db / 20.0), fit = report->fit_rms;
+    const double all = pow(10.0, -result.psnr_db / 20.0);
     report->psnr_db = result.psnr_db;
     report->store_rms = report->steps_rms = sqrt(fmax(all * all - fit * fit, 0.0));
-    const double left = f->p->psnr_db > 0.0 ? (double)INFINITY : allowed - result.bytes;
+    const double left = allowed > 0.0 ? allowed - result.bytes : (double)INFINITY;
     return c->leveled ? coding_find_levels(c, left) : RELUME_OK;
 }
 

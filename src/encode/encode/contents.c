@@ -97,9 +97,12 @@ static double highlight_bytes(double psnr_db)
 }
 
 // Bytes of what moves with the light, a view: little beside its planes, or beside the header.
+// Where the quality is left open it has what it takes, since unseen lights are not to suffer.
 static double model_bytes(const struct contents *f)
 {
     const struct relume_pack_encode_params *p = f->p;
+    if (p->least_db > 0.0)
+        return 0.0;
     const double pixels =
         (double)relume_capture_width(f->capture) * relume_capture_height(f->capture);
     const double eighth = (p->psnr_db > 0.0 ? 1.0 : p->bytes_per_pixel) / 8.0, least = 4096.0;

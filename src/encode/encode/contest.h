@@ -5,9 +5,10 @@
 #include <relume/encode/pack_encode.h>
 
 // Keeps in *out the better of the components that are there and `pictures`, at the quality or bytes
-// of `p`; the other is destroyed, on failure both. Shared by the members of p->team. Errors as
-// windows_compare and rate_merit, and of sharing.
-relume_status contest_keep_better(relume_coder **out, relume_coder *pictures,
+// of `p`. A model of both decides (rate_model.h). The other is destroyed, on failure both.
+// Components miss photographs by `fit` before coding: mean squared error of display values. Shared
+// by the members of p->team. Errors as relume_project and rate_model_curve, and of sharing.
+relume_status contest_keep_better(relume_coder **out, relume_coder *pictures, double fit,
                                   const relume_capture *capture,
                                   const struct relume_pack_encode_params *p,
                                   const struct relume_project_params *encode);

@@ -4,17 +4,23 @@
 
 #include "core/base/params.h"
 #include "encode/encode/contest.h"
+#include "encode/encode/lossy_choice.h"
 #include "format/coder/coding.h"
 
+#include <math.h>
 #include <string.h>
 
-// Truncation is to cost little beside coding, which makes more components than these nearly free
-// but for their functions in the header; and a usual target where bytes are asked for.
-enum { LEAST_COMPONENTS = 27, NUGGET = 2 };
-static const double SPARE_DB = 3.0, LEAST_SPARE_DB = 0.5, USUAL_DB = 40.0;
+// Truncation is to cost little beside coding; and a usual target where bytes are asked for.
+static const double SPARE_DB = 3.0, USUAL_DB = 40.0;
 
-// Of more planes than these the pictures are not considered.
-enum { MOST_PLANES = 1200 };
+enum { USUAL = 27, NUGGET = 2 };
+
+// Of more planes than these the pictures are not considered, nor where so few components for each
+// light are enough.
+enum { MOST_PLANES = 1200, COLOURS = 3, FEW_LIGHTS = 2 };
+
+// Nothing smooths between pictures, which may cost unseen lights this much.
+static const double LEAST_UNSEEN_DB = 0.2;
 
 static double wanted(const struct relume_pack_encode_params *p)
 {
@@ -39,40 +45,54 @@ static relume_status learn_pictures(relume_coder **out, const relume_coder *comp
     return relume_coder_learn(out, &relume_basis_table, capture, &all, encode);
 }
 
+// Pictures are considered where components do not reach the quality, or are so many that pictures
+// may take fewer bytes and show unseen lights alike.
+static bool may_be_pictures(const relume_coder *components, const struct relume_decision *decision,
+                            const struct relume_pack_encode_params *p)
+{
+    const struct relume_coder_info *info = relume_coder_info(components);
+    const bool enough = decision->psnr_db >= wanted(p) + SPARE_DB;
+    if (!info->basis->joint || COLOURS * info->lights > MOST_PLANES)
+        return false;
+    return !enough ||
+           ((info->coefficients > USUAL || FEW_LIGHTS * info->coefficients > info->lights) &&
+            decision->sharp_db > decision->unseen_db - LEAST_UNSEEN_DB);
+}
+
+relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
+                           const relume_capture *capture, const struct relume_coder_params *coder,
+                           const struct relume_pack_encode_params *params)
+{
+    const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
+    const bool is_open = p.least_db > 0.0;
+    const struct relume_project_params lossy = {.log = p.log,
+                                                .domain = RELUME_DOMAIN_DISPLAY,
+                                                .storage = RELUME_STORE_12,
+                                                .step = RELUME_STEP_HALVED,
+                                                .threads = p.threads,
+                                                .team = p.team};
+    struct relume_project_params look = lossy;
+    relume_coder *pictures = NULL;
+    if (is_open) {
+        look.storage = RELUME_STORE_DEFAULT;
+        look.step = RELUME_STEP_DEFAULT;
+    }
+    relume_status status = relume_coder_decide(out, decision, capture,
+                                               is_open ? 0.0 : wanted(&p) + SPARE_DB, coder, &look);
+    if (status || is_open || coder->coefficients || !may_be_pictures(*out, decision, &p))
+        return status;
+    status = learn_pictures(&pictures, *out, capture, coder, &lossy);
+    if (!status)
+        return contest_keep_better(out, pictures, pow(10.0, -0.1 * decision->pooled_db), capture,
+                                   &p, &lossy);
+    relume_coder_destroy(out);
+    return status;
+}
+
 relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,
                                  const struct relume_coder_params *coder,
                                  const struct relume_pack_encode_params *params)
 {
-    const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
-    const struct relume_project_params encode = {.log = p.log,
-                                                 .domain = RELUME_DOMAIN_DISPLAY,
-                                                 .storage = RELUME_STORE_12,
-                                                 .step = RELUME_STEP_HALVED,
-                                                 .threads = p.threads,
-                                                 .team = p.team};
-    const int lights = relume_capture_manifest(capture)->lights;
     struct relume_decision decision;
-    relume_coder *pictures = NULL;
-    relume_status status =
-        relume_coder_decide(out, &decision, capture, wanted(&p) + SPARE_DB, coder, &encode);
-    const int components = status ? 0 : relume_coder_info(*out)->coefficients;
-    if (!status && !coder->coefficients && components < LEAST_COMPONENTS && components < lights) {
-        struct relume_coder_params more = *coder;
-        more.coefficients = lights < LEAST_COMPONENTS ? lights : LEAST_COMPONENTS;
-        relume_coder_destroy(out);
-        status = relume_coder_learn(out, &relume_basis_pca, capture, &more, &encode);
-    }
-    const struct relume_coder_info *info = status ? NULL : relume_coder_info(*out);
-    if (status || coder->coefficients || !info->basis->joint || 3 * lights > MOST_PLANES)
-        return status;
-    status = learn_pictures(&pictures, *out, capture, coder, &encode);
-    if (!status && p.psnr_db > 0.0 && decision.psnr_db < p.psnr_db + LEAST_SPARE_DB) {
-        relume_coder_destroy(out);
-        *out = pictures;
-        return RELUME_OK;
-    }
-    if (!status)
-        return contest_keep_better(out, pictures, capture, &p, &encode);
-    relume_coder_destroy(out);
-    return status;
+    return lossy_decide(out, &decision, capture, coder, params);
 }

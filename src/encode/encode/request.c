@@ -39,7 +39,7 @@ bool request_is_display(const struct encode_request *r)
 
 static bool has_bytes_for(const struct encode_request *r, double least)
 {
-    return !request_is_lossy(r) || r->pack.bytes_per_pixel >= least;
+    return !request_is_lossy(r) || r->is_open || r->pack.bytes_per_pixel >= least;
 }
 
 // Shadows and highlights do not move together: who asks for highlights has chosen. Without being
@@ -55,12 +55,28 @@ static void decide_moving(struct encode_request *r)
         p->highlights || has_bytes_for(r, MIN_HIGHLIGHT_BYTES) ? p->highlights : RELUME_MOVING_NO;
 }
 
-// Trials begin with a usual quality; an effort alone asks for one that is hardly told from the
-// photographs.
+static bool decides(const struct relume_encode_capture_params *p)
+{
+    return !p->basis && !p->books && !p->robust && !p->luminance;
+}
+
+// An effort alone leaves the quality to the photographs too, which are known later.
+static bool is_open(const struct relume_encode_capture_params *p)
+{
+    return decides(p) && p->effort && p->psnr_db == 0.0 && p->bytes_per_pixel == 0.0 &&
+           p->jnd == 0.0;
+}
+
+// The quality that is asked for. Trials of JND begin with a usual one.
 static double wanted_psnr(const struct relume_encode_capture_params *p)
 {
     const bool alone = p->effort && p->psnr_db == 0.0 && p->bytes_per_pixel == 0.0;
-    return p->jnd > 0.0 ? RELUME_USUAL_DB : alone ? RELUME_LOSSY_DB : p->psnr_db;
+    return p->jnd > 0.0 || is_open(p) ? RELUME_USUAL_DB : alone ? RELUME_LOSSY_DB : p->psnr_db;
+}
+
+static bool asks_for_loss(const struct relume_encode_capture_params *p)
+{
+    return p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 || p->jnd > 0.0 || p->effort;
 }
 
 void request_make(struct encode_request *out, const char *path, const relume_capture *capture,
@@ -99,8 +115,11 @@ void request_make(struct encode_request *out, const char *path, const relume_cap
                  .free_storage = !p->storage,
                  .learn_only = p->learn_only,
                  .threads = p->threads},
-        .decides = !p->basis && !p->books && !p->robust && !p->luminance,
+        .decides = decides(p),
+        .is_open = is_open(p),
     };
+    if (out->is_open)
+        out->pack.least_db = RELUME_USUAL_DB;
     out->coder.log = log_at(&out->about, p->log, "%s: ", p->name ? p->name : "the capture");
     if (p->books) {
         out->books = PARAMS(relume_books_params, p->books);
@@ -153,8 +172,12 @@ static relume_status check_ranges(const struct relume_encode_capture_params *p)
 static relume_status check_loss(const struct relume_encode_capture_params *p)
 {
     const bool jnd = p->jnd > 0.0, psnr = p->psnr_db > 0.0, bytes = p->bytes_per_pixel > 0.0;
-    if (!jnd && !psnr && !bytes && !p->effort)
+    if (!asks_for_loss(p))
         return RELUME_OK;
+    if (p->lossless)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "--lossless keeps what lossy planes lose; expected without --psnr, --jnd, "
+                        "--bytes-per-pixel and --effort");
     if (p->books || p->storage || p->step || p->compression || p->quality_db > 0.0 ||
         (psnr && bytes))
         return log_fail(

@@ -20,6 +20,7 @@ struct encode_request {
     struct relume_pack_encode_params pack;
     enum relume_moving shadows, highlights;
     bool decides;  // the photographs choose basis, domain and storage
+    bool is_open;  // and, lossy, the quality
     struct relume_encode_result result;
 };
 
@@ -27,9 +28,9 @@ struct encode_request {
 void request_make(struct encode_request *out, const char *path, const relume_capture *capture,
                   const struct relume_encode_capture_params *asked);
 
-// With loss, by PSNR or bytes.
+// Lossy, by PSNR or bytes.
 bool request_is_lossy(const struct encode_request *r);
-// With loss by a table whose interpolant is left open.
+// Lossy, by a table whose interpolant is left open.
 bool request_is_table(const struct encode_request *r);
 // Pixels are read before the capture is encoded.
 bool request_learns_first(const struct encode_request *r);

@@ -91,6 +91,8 @@ struct relume_decision {
     enum relume_storage storage;
     double psnr_db;    // captured lights, before storing, mean over lights of at most 60
     double unseen_db;  // lights left out, likewise; 0: not known
+    double pooled_db;  // captured lights, as relume_evaluation.psnr_pooled_db
+    double sharp_db;   // lights left out where nothing smooths, for RELUME_STEP_HALVED
 };
 // The choice for that quality, in dB; the caller destroys `*out`. `decision` may be NULL.
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,

@@ -62,6 +62,10 @@ struct av1_effort {
     int quantiser;
     enum av1_preset_number preset;
 };
+// The step of a quantiser, on orthonormal transforms of samples of 12 bits that are coded in
+// `bits`.
+double av1_step(int quantiser, int bits);
+
 struct av1_bytes {
     unsigned char *byte;  // [size], mem_free
     size_t size, capacity;

@@ -80,6 +80,12 @@ static int step_of(const int *steps, int quantiser)
     return (AV1_STEPS - part) * steps[whole] + (part ? part * steps[whole + 1] : 0);
 }
 
+double av1_step(int quantiser, int bits)
+{
+    const double scaled = 8.0 * AV1_STEPS, top = (1 << bits) - 1;
+    return step_of(bits == 8 ? steps_8 : steps_12, quantiser) / scaled * AV1_TOP / top;
+}
+
 // The quantiser whose step is 1 << times that of another.
 static int coarser(int quantiser, int times, int bits)
 {

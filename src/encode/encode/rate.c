@@ -231,10 +231,8 @@ static double samples_of(const relume_coder *coder, const relume_capture *captur
 
 static enum av1_preset_number preset_of(enum relume_effort effort, double samples)
 {
-    return effort == RELUME_EFFORT_FAST       ? AV1_REALTIME_9
-           : effort == RELUME_EFFORT_SMALLEST ? AV1_GOOD_4
-           : samples < MOST_UNHURRIED         ? AV1_REALTIME_6
-                                              : AV1_REALTIME_9;
+    const bool slow = effort == RELUME_EFFORT_SMALLEST || samples < MOST_UNHURRIED;
+    return slow && effort != RELUME_EFFORT_FAST ? AV1_GOOD_4 : AV1_REALTIME_9;
 }
 
 // Some groups first, then all, by the PSNR or by the bytes.

@@ -120,7 +120,7 @@ relume_status learnt_encode(struct lossy_words *out, struct learnt_steps *steps,
                 isinf(value) ? TOP : (uint16_t)rintf((x - steps->offset[c]) / steps->scale[c]);
         }
     for (int q = FINEST; !status && q <= COARSEST; q += COARSER) {
-        const struct av1_effort effort = {q * AV1_STEPS, AV1_REALTIME_6_12};
+        const struct av1_effort effort = {q * AV1_STEPS, AV1_GOOD_3_SCREEN};
         mem_free(out->word);
         status = lossy_encode_codes(out, codes, &shape, &effort, threads, log);
         if (4.0 * (double)out->count <= bytes)

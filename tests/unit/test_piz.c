@@ -208,6 +208,7 @@ static bool comes_back(piz_decoder *d, const uint16_t *words, const uint8_t *byt
     uint8_t *copy = malloc(size + 1);  // nothing behind it is looked at
     uint16_t *out = malloc(plain);
     memcpy(copy, bytes, size);
+    assert_true(piz_decoder_reserve(d, (size_t)(width * rows), each));
     const bool decoded = piz_decompress(d, out, copy, size, width, rows, channels, each, NULL);
     const bool same = decoded && !memcmp(out, words, plain);
     free(copy);
@@ -285,6 +286,7 @@ static void test_damage(void **state)
             const size_t size = piz_compress(p, bytes, work, words, WIDTH, ROWS, CHANNELS);
             const size_t head = size < 64 || i % 2 ? size : 64;
             bytes[test_random(&seed) % head] ^= (uint8_t)(1u << test_random(&seed) % 8);
+            assert_true(piz_decoder_reserve(d, WIDTH * ROWS, 1));
             (void)piz_decompress(d, out, bytes, size, WIDTH, ROWS, CHANNELS, 1, NULL);
         }
     free(bytes);

@@ -169,7 +169,8 @@ static void test_the_table(void **state)
         {RELUME_EIO, 3, "output"},
         {RELUME_ESYSTEM, 3, "system"},
         {RELUME_ECANCEL, 130, "cancelled"},
-        {(relume_status)(RELUME_ECANCEL + 1), 3, "unknown"},
+        {RELUME_ECODER, 3, "coder"},
+        {(relume_status)(RELUME_ECODER + 1), 3, "unknown"},
         {(relume_status)-1, 3, "unknown"},
     };
     for (size_t i = 0; i < sizeof want / sizeof *want; i++) {

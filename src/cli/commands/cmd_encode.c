@@ -283,8 +283,7 @@ static relume_status encode_as_asked(const struct encode_options *o)
     struct options_text text;
     if (length && o->output[length - 1] == '/')
         return usage_error("-o: expected the name of a file, as FILE.exr; found '%s'", o->output);
-    const bool lossy = o->psnr > 0.0 || o->bytes_per_pixel > 0.0 || o->effort;
-    if (lossy && is_relume_file(args->input[0]))
+    if (!o->lossless && is_relume_file(args->input[0]))
         return encode_file_again(o, &params);
     relume_status status = parse_books(args, &o->books, books, &books_params);
     params.books = books ? &books_params : NULL;

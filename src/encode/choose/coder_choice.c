@@ -53,6 +53,7 @@ struct choice {
     struct relume_samples all;   // in `domain`
     struct relume_samples some;  // of them
     enum relume_domain domain;
+    bool hdr;
     struct encoder *display;       // from linear light
     struct relume_transfer curve;  // of the display domain
     struct encoder *recode;        // from that to display values, or NULL: it is the same
@@ -555,7 +556,7 @@ static relume_status choose_storage(struct choice *choice, enum relume_storage *
     static const enum relume_storage even[] = {RELUME_STORE_8, RELUME_STORE_10, RELUME_STORE_12,
                                                RELUME_STORE_16, RELUME_STORE_HALF};
     const size_t n = choice->some.pixels, planes = (size_t)choice->coder->info.planes;
-    const bool hdr = is_hdr(choice);
+    const bool hdr = choice->hdr;
     struct storing s = {.choice = choice, .coder = choice->coder};
     s.after = mem_array(planes * n, sizeof *s.after);
     s.range = mem_array(planes, sizeof *s.range);
@@ -679,7 +680,7 @@ static relume_status consider_pictures(struct choice *choice, enum relume_storag
 }
 
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,
-                                  const relume_capture *capture, double quality_db,
+                                  const relume_capture *capture, double quality_db, bool display,
                                   const struct relume_coder_params *coder,
                                   const struct relume_project_params *encode)
 {
@@ -714,6 +715,12 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
                           "the masks are black everywhere; expected white where the object is");
     if (!status)
         status = take_some(&choice);
+    choice.hdr = !status && is_hdr(&choice);
+    if (!status && display && !choice.hdr) {
+        choice.encode.domain = RELUME_DOMAIN_DISPLAY;
+        if (choice.domain == RELUME_DOMAIN_LINEAR)
+            move_samples(&choice, RELUME_DOMAIN_DISPLAY);
+    }
     if (!status && choice.manifest->lights == 1 && !choice.params.coefficients)
         status = keep_picture(&choice);
     else if (!status)
@@ -729,8 +736,8 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         relume_coder_info(choice.coder)->parameter[2] > 0.0)
         status = judge_sharp(&choice, &sharp);
     if (decision)
-        *decision = (struct relume_decision){choice.domain, storage,       choice.own,
-                                             choice.unseen, choice.pooled, sharp};
+        *decision = (struct relume_decision){choice.domain, storage, choice.own, choice.unseen,
+                                             choice.pooled, sharp,   choice.hdr};
     if (!status) {
         *out = choice.coder;
         choice.coder = NULL;

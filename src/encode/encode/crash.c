@@ -1,6 +1,8 @@
 // crash.c - a capture whose coder crashed: what is said, and how it is encoded once more
 #include "encode/encode/crash.h"
 
+#include "encode/encode/request.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -44,17 +46,15 @@ void crash_watch_end(struct crash_watch *w, bool tell)
     pthread_mutex_destroy(&w->lock);
 }
 
-static bool is_lossy(const struct relume_encode_capture_params *p)
+void crash_say(const struct crash_watch *w, const struct relume_encode_capture_params *p,
+               const relume_capture *capture)
 {
-    return p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 || p->jnd > 0.0 || p->effort;
-}
-
-void crash_say(const struct crash_watch *w, const struct relume_encode_capture_params *p)
-{
+    struct encode_request r;
+    request_make(&r, NULL, capture, p);
     log_line(p->log, RELUME_WARNING, "%s: %s; %s; encode again for the file that was asked for",
              p->name ? p->name : "the capture", w->error,
-             is_lossy(p) ? "the file is lossless, and larger"
-                         : "shadows and highlights fade in the file");
+             request_is_lossy(&r) ? "the file is lossless, and larger"
+                                  : "shadows and highlights fade in the file");
 }
 
 struct relume_encode_capture_params crash_params(const struct relume_encode_capture_params *p)
@@ -62,6 +62,7 @@ struct relume_encode_capture_params crash_params(const struct relume_encode_capt
     struct relume_encode_capture_params out = *p;
     out.psnr_db = out.bytes_per_pixel = out.jnd = 0.0;
     out.effort = RELUME_EFFORT_DEFAULT;
+    out.lossless = true;
     out.shadows = out.highlights = RELUME_MOVING_NO;
     return out;
 }

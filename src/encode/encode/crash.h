@@ -22,7 +22,8 @@ const struct relume_log *crash_watch_begin(struct crash_watch *out, const struct
 void crash_watch_end(struct crash_watch *w, bool tell);
 
 // Warns that the coder crashed, and says how the file differs.
-void crash_say(const struct crash_watch *w, const struct relume_encode_capture_params *p);
+void crash_say(const struct crash_watch *w, const struct relume_encode_capture_params *p,
+               const relume_capture *capture);
 // The same params without anything that libaom codes: lossless, with shadows and highlights that
 // fade.
 struct relume_encode_capture_params crash_params(const struct relume_encode_capture_params *p);

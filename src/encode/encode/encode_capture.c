@@ -41,11 +41,21 @@ static void settle_quality(struct encode_request *r, const struct relume_decisio
     const double unseen = decision->unseen_db > 0.0 ? decision->unseen_db : RELUME_USUAL_DB;
     const double coding = fmin(unseen + BELOW_UNSEEN_DB, MOST_DB);
     const double all = mean_square(coding) + mean_square(decision->pooled_db);
+    r->pack.domain = RELUME_DOMAIN_DISPLAY;
     r->pack.least_db = usual;
     r->pack.psnr_db = fmax(usual, -10.0 * log10(all));
     r->result.quality_db = r->pack.psnr_db;
     if (r->result.unseen_db == 0.0)
         r->result.unseen_db = decision->unseen_db;
+}
+
+// High dynamic range that nobody asked to be lossy.
+static void stay_lossless(struct encode_request *r, const struct relume_decision *decision)
+{
+    r->is_open = false;
+    r->pack.psnr_db = r->pack.least_db = 0.0;
+    r->pack.domain = decision->domain;
+    r->pack.storage = decision->storage;
 }
 
 static relume_status learn(relume_coder **coder, struct encode_request *r)
@@ -60,7 +70,9 @@ static relume_status learn(relume_coder **coder, struct encode_request *r)
     relume_status status = RELUME_OK;
     if (request_is_lossy(r) && r->decides) {
         status = lossy_decide(coder, &decision, r->capture, &r->coder, &r->pack);
-        if (!status && r->is_open)
+        if (!status && r->is_open && r->is_unasked && decision.is_hdr)
+            stay_lossless(r, &decision);
+        else if (!status && r->is_open)
             settle_quality(r, &decision);
         return status;
     }
@@ -70,8 +82,8 @@ static relume_status learn(relume_coder **coder, struct encode_request *r)
         return status;
     if (!r->decides)
         return relume_coder_learn(coder, r->basis, r->capture, &r->coder, &encode);
-    status =
-        relume_coder_decide(coder, &decision, r->capture, r->result.quality_db, &r->coder, &encode);
+    status = relume_coder_decide(coder, &decision, r->capture, r->result.quality_db, false,
+                                 &r->coder, &encode);
     r->pack.domain = decision.domain;
     r->pack.storage = decision.storage;
     if (r->result.unseen_db == 0.0)
@@ -347,7 +359,7 @@ static relume_status encode_safely(const char *path, const relume_capture *captu
     crash_watch_end(&watch, !crashed);
     if (!crashed)
         return status;
-    crash_say(&watch, p);
+    crash_say(&watch, p, capture);
     attempt = crash_params(p);
     *result = (struct relume_encode_result){0};
     const relume_status again = encode_as_asked(path, capture, result, &attempt);
@@ -377,12 +389,12 @@ relume_status relume_encode_capture(const char *path, const relume_capture *capt
 
 static relume_status check_again(const struct relume_encode_capture_params *p)
 {
-    const bool lossy = p->psnr_db > 0.0 || p->bytes_per_pixel > 0.0 || p->effort;
-    if (lossy && !p->jnd && !p->parts && !p->team && !p->learnt && !p->basis && !p->coefficients)
+    if (!p->lossless && !p->jnd && !p->parts && !p->team && !p->learnt && !p->basis &&
+        !p->coefficients)
         return relume_encode_check(p);
     return log_fail(p->log, RELUME_EINVAL,
-                    "a relume file is coded again as it is; expected --psnr, --bytes-per-pixel or "
-                    "--effort, and nothing about the model");
+                    "a relume file is coded again with loss, as it is; expected --psnr, "
+                    "--bytes-per-pixel, --effort or none of them, and nothing about the model");
 }
 
 static relume_status encode_again(struct encode_request *r, relume_pack *pack)
@@ -394,7 +406,7 @@ static relume_status encode_again(struct encode_request *r, relume_pack *pack)
     r->pack.domain = info->domain;
     r->pack.display = info->display;
     r->pack.writer = r->asked->writer;
-    if (r->is_open) {  // no photographs say how good it is to be
+    if (r->is_open || !request_is_lossy(r)) {  // no photographs say how good it is to be
         r->is_open = false;
         r->pack.psnr_db = r->result.quality_db = RELUME_LOSSY_DB;
         r->pack.least_db = 0.0;

@@ -74,11 +74,12 @@ relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
     struct relume_project_params look = lossy;
     relume_coder *pictures = NULL;
     if (is_open) {
+        look.domain = p.domain;
         look.storage = RELUME_STORE_DEFAULT;
         look.step = RELUME_STEP_DEFAULT;
     }
-    relume_status status = relume_coder_decide(out, decision, capture,
-                                               is_open ? 0.0 : wanted(&p) + SPARE_DB, coder, &look);
+    relume_status status = relume_coder_decide(
+        out, decision, capture, is_open ? 0.0 : wanted(&p) + SPARE_DB, is_open, coder, &look);
     if (status || is_open || coder->coefficients || !may_be_pictures(*out, decision, &p))
         return status;
     status = learn_pictures(&pictures, *out, capture, coder, &lossy);

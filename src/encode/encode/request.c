@@ -60,18 +60,38 @@ static bool decides(const struct relume_encode_capture_params *p)
     return !p->basis && !p->books && !p->robust && !p->luminance;
 }
 
-// An effort alone leaves the quality to the photographs too, which are known later.
-static bool is_open(const struct relume_encode_capture_params *p)
+// Less is no photograph, and small anyway.
+static const double LEAST_PIXELS = 64.0 * 64.0;
+
+static bool is_small(const relume_capture *capture)
 {
-    return decides(p) && p->effort && p->psnr_db == 0.0 && p->bytes_per_pixel == 0.0 &&
-           p->jnd == 0.0;
+    return (double)relume_capture_width(capture) * relume_capture_height(capture) < LEAST_PIXELS;
+}
+
+// Nothing says how the planes are stored.
+static bool is_usual(const struct relume_encode_capture_params *p, const relume_capture *capture)
+{
+    return !p->lossless && p->quality_db == 0.0 && !p->storage && !p->step && !p->compression &&
+           (p->domain == RELUME_DOMAIN_AUTO || p->domain == RELUME_DOMAIN_DISPLAY) &&
+           p->display.curve != RELUME_CURVE_LOG && capture && !is_small(capture);
+}
+
+// The quality is left to the photographs too, which are known later: by an effort alone, or by
+// default.
+static bool is_open(const struct relume_encode_capture_params *p, const relume_capture *capture)
+{
+    return decides(p) && (p->effort || is_usual(p, capture)) && p->psnr_db == 0.0 &&
+           p->bytes_per_pixel == 0.0 && p->jnd == 0.0;
 }
 
 // The quality that is asked for. Trials of JND begin with a usual one.
-static double wanted_psnr(const struct relume_encode_capture_params *p)
+static double wanted_psnr(const struct relume_encode_capture_params *p,
+                          const relume_capture *capture)
 {
     const bool alone = p->effort && p->psnr_db == 0.0 && p->bytes_per_pixel == 0.0;
-    return p->jnd > 0.0 || is_open(p) ? RELUME_USUAL_DB : alone ? RELUME_LOSSY_DB : p->psnr_db;
+    return p->jnd > 0.0 || is_open(p, capture) ? RELUME_USUAL_DB
+           : alone                             ? RELUME_LOSSY_DB
+                                               : p->psnr_db;
 }
 
 static bool asks_for_loss(const struct relume_encode_capture_params *p)
@@ -104,7 +124,7 @@ void request_make(struct encode_request *out, const char *path, const relume_cap
                  .compression = p->compression,
                  .pyramid = p->pyramid,
                  .no_depth = p->no_depth,
-                 .psnr_db = wanted_psnr(p),
+                 .psnr_db = wanted_psnr(p, capture),
                  .bytes_per_pixel = p->bytes_per_pixel,
                  .effort = p->effort,
                  .share = p->share,
@@ -116,8 +136,9 @@ void request_make(struct encode_request *out, const char *path, const relume_cap
                  .learn_only = p->learn_only,
                  .threads = p->threads},
         .decides = decides(p),
-        .is_open = is_open(p),
+        .is_open = is_open(p, capture),
     };
+    out->is_unasked = out->is_open && !p->effort;
     if (out->is_open)
         out->pack.least_db = RELUME_USUAL_DB;
     out->coder.log = log_at(&out->about, p->log, "%s: ", p->name ? p->name : "the capture");
@@ -126,7 +147,7 @@ void request_make(struct encode_request *out, const char *path, const relume_cap
         out->books.log = out->coder.log;
         out->pack.books = &out->books;
     }
-    if (request_is_lossy(out) && out->pack.domain == RELUME_DOMAIN_AUTO)
+    if (request_is_lossy(out) && !out->is_unasked && out->pack.domain == RELUME_DOMAIN_AUTO)
         out->pack.domain = RELUME_DOMAIN_DISPLAY;
     decide_moving(out);
     out->result.quality_db = p->jnd > 0.0              ? 0.0

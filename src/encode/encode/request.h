@@ -19,8 +19,9 @@ struct encode_request {
     struct relume_books_params books;
     struct relume_pack_encode_params pack;
     enum relume_moving shadows, highlights;
-    bool decides;  // the photographs choose basis, domain and storage
-    bool is_open;  // and, lossy, the quality
+    bool decides;     // the photographs choose basis, domain and storage
+    bool is_open;     // and, lossy, the quality
+    bool is_unasked;  // by default: high dynamic range is not to be lossy
     struct relume_encode_result result;
 };
 

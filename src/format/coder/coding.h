@@ -93,10 +93,12 @@ struct relume_decision {
     double unseen_db;  // lights left out, likewise; 0: not known
     double pooled_db;  // captured lights, as relume_evaluation.psnr_pooled_db
     double sharp_db;   // lights left out where nothing smooths, for RELUME_STEP_HALVED
+    bool is_hdr;       // linear light far above white, or one picture of linear light
 };
 // The choice for that quality, in dB; the caller destroys `*out`. `decision` may be NULL.
+// `display`: for display values, unless the dynamic range is high.
 relume_status relume_coder_decide(relume_coder **out, struct relume_decision *decision,
-                                  const relume_capture *capture, double quality_db,
+                                  const relume_capture *capture, double quality_db, bool display,
                                   const struct relume_coder_params *coder,
                                   const struct relume_project_params *encode);
 

@@ -1255,9 +1255,12 @@ static exr_result_t decompress(exr_decode_pipeline_t *p)
     const uint64_t samples =
         bytes ? (uint64_t)c->width * (uint64_t)c->height * (uint64_t)p->channel_count : 0;
     const struct piz_conversion *to = u->to && u->to->bytes <= 2 ? u->to : NULL;
-    if (!u->piz || !samples || p->chunk.packed_size >= p->chunk.unpacked_size ||
-        samples * (uint64_t)bytes != p->chunk.unpacked_size || !p->unpacked_buffer ||
-        !piz_decompress(u->piz, p->unpacked_buffer, p->packed_buffer, p->chunk.packed_size,
+    if (!samples || p->chunk.packed_size >= p->chunk.unpacked_size ||
+        samples * (uint64_t)bytes != p->chunk.unpacked_size || !p->unpacked_buffer)
+        return u->decompress(p);
+    if (!piz_decoder_reserve(u->piz, (size_t)c->width * (size_t)c->height, bytes / 2))
+        return EXR_ERR_OUT_OF_MEMORY;
+    if (!piz_decompress(u->piz, p->unpacked_buffer, p->packed_buffer, p->chunk.packed_size,
                         c->width, c->height, p->channel_count, bytes / 2, to))
         return u->decompress(p);
     u->converted = to != NULL;
@@ -1301,8 +1304,9 @@ static exr_result_t begin_unpacking(struct unpacking *u, const struct layout *l,
         e = exr_decoding_choose_default_routines(l->file->exr, l->part, pipeline);
     u->decompress = pipeline->decompress_fn;
     if (!e && u->decompress && chunk->compression == EXR_COMPRESSION_PIZ) {
-        u->piz = piz_decoder_create();  // without it the library decodes
+        u->piz = piz_decoder_create();
         pipeline->decompress_fn = decompress;
+        e = u->piz ? e : EXR_ERR_OUT_OF_MEMORY;
     }
     return e;
 }

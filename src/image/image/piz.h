@@ -23,6 +23,9 @@ typedef struct piz_decoder piz_decoder;
 piz_decoder *piz_decoder_create(void);
 void piz_decoder_destroy(piz_decoder **d);
 
+// Room for blocks of so many samples of `words` (1 or 2) words in a channel. False: no memory.
+bool piz_decoder_reserve(piz_decoder *d, size_t samples, int words);
+
 // Makes codes[n] of `bytes` each, 1 or 2, of samples. False: some have no code.
 struct piz_conversion {
     bool (*convert)(void *context, void *codes, const void *samples, size_t n);
@@ -30,9 +33,9 @@ struct piz_conversion {
     size_t bytes;
 };
 
-// Samples of `words` (1 or 2) words each, out[row][channel][x][words], of the `size` bytes of a
-// block; or with a conversion its codes, out[row][channel][x]. False: not one that this code knows,
-// damaged or not; `out` may hold anything then.
+// Samples of `words` words each, for which there is room, out[row][channel][x][words], of the
+// `size` bytes of a block; or with a conversion its codes, out[row][channel][x]. False: not one
+// that this code knows, damaged or not; `out` may hold anything then.
 bool piz_decompress(piz_decoder *d, void *out, const uint8_t *packed, size_t size, int width,
                     int rows, int channels, int words, const struct piz_conversion *to);
 

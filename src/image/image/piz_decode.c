@@ -50,6 +50,17 @@ void piz_decoder_destroy(piz_decoder **d)
     *d = NULL;
 }
 
+bool piz_decoder_reserve(piz_decoder *d, size_t samples, int words)
+{
+    const size_t size = 2 * samples * (size_t)words;
+    if (d->capacity >= size)
+        return true;
+    mem_free(d->plane);
+    d->plane = mem_array(size, sizeof *d->plane);
+    d->capacity = d->plane ? size : 0;
+    return d->plane != NULL;
+}
+
 // ---------------------------------------------------------------- bytes and bits
 
 struct bytes {
@@ -468,12 +479,7 @@ bool piz_decompress(piz_decoder *d, void *out, const uint8_t *packed, size_t siz
     const size_t pixels = p.line * p.rows, n = pixels * p.words;
     struct bytes b = {packed, packed + size};
     uint32_t bits;
-    if (d->capacity < 2 * n) {
-        mem_free(d->plane);
-        d->plane = mem_array(2 * n, sizeof *d->plane);
-        d->capacity = d->plane ? 2 * n : 0;
-    }
-    if (!d->plane || !take_values(d, &b) || !take_code(d, &b, &bits))
+    if (d->capacity < 2 * n || !take_values(d, &b) || !take_code(d, &b, &bits))
         return false;
     if (to && !convert_values(d, words, to))
         return false;

@@ -77,8 +77,9 @@ shared() { # name capture parts options...: learnt first, then the parts, backwa
 shared 'learnt together, by itself' slab 4
 shared 'learnt together, masks' masked 3 --basis pca
 shared 'learnt together, rows of JPEGs' cut 5 --basis pca --coefficients 8
-shared 'learnt together, rows, by itself' flat 3
+shared 'learnt together, rows, by itself' flat 3 --lossless
 check 'their steps are learnt, so that join copies rows' grep -q relume.part.stored 1.part
+shared 'learnt together, rows with loss' flat 3
 codebook_of_all() { # name options...: nothing was learnt first
     name=$1
     shift

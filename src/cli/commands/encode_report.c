@@ -125,7 +125,7 @@ static void describe_reach(char text[128], const struct encoded_file *f)
                  bytes == 1.0 ? "" : "s");
         break;
     default:
-        if (r->quality_db > 0.0 && !r->lossy && !r->coder_crashed)
+        if (r->quality_db > 0.0 && !r->lossy && !r->coder_crashed && !f->params->lossless)
             hint_at_size(text, r);
     }
 }
@@ -142,11 +142,11 @@ static void say_file(const struct args *args, const struct encoded_file *f)
     announce(args, RELUME_NOTE,
              "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
              "coefficient%s%s, "
-             "%s%s%s%s",
+             "%s%s%s%s%s",
              f->output, r->lights == 1 && r->views == 1 ? "" : "s", r->measured.psnr_db,
              judgement(r->measured.psnr_db), r->coefficients, relume_plural(r->coefficients),
              r->joint ? "" : " a colour", r->lossy ? "coded with loss" : storage_words(r->storage),
-             bytes, unseen, more);
+             r->lossy ? "" : ", lossless", bytes, unseen, more);
 }
 
 static void say_part(const struct args *args, const struct encoded_file *f)

@@ -49,6 +49,7 @@ struct choice {
     const struct relume_manifest *manifest;
     struct relume_coder_params params;
     struct relume_project_params encode;
+    enum relume_domain usual_domain;  // that is asked for, or the capture's
     double quality;
     struct relume_samples all;   // in `domain`
     struct relume_samples some;  // of them
@@ -670,8 +671,7 @@ static relume_status consider_pictures(struct choice *choice, enum relume_storag
         return RELUME_OK;
     }
     relume_coder_destroy(&components);
-    if (!status &&
-        choice->domain != relume_capture_domain(choice->capture, choice->encode.domain)) {
+    if (!status && choice->domain != choice->usual_domain) {
         move_samples(choice, RELUME_DOMAIN_LINEAR);
         status = make_pictures(choice, &other, &theirs);
     }
@@ -696,7 +696,7 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
     choice.params.hemispherical = relume_capture_hemispherical(capture);
     choice.params.pole_y = relume_capture_pole_y(capture);
     choice.params.threads = choice.encode.threads;
-    choice.domain = relume_capture_domain(capture, choice.encode.domain);
+    choice.usual_domain = choice.domain = relume_capture_domain(capture, choice.encode.domain);
     choice.curve = relume_encode_curve(capture, choice.encode.display);
     relume_status status = choice.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status)

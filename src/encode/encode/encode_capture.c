@@ -13,6 +13,7 @@
 #include "encode/encode/again.h"
 #include "encode/encode/crash.h"
 #include "encode/encode/jnd_search.h"
+#include "encode/encode/jpeg_model.h"
 #include "encode/encode/lossy_choice.h"
 #include "encode/encode/moving.h"
 #include "encode/encode/request.h"
@@ -29,6 +30,9 @@
 // are missed by, which costs these about 0.1 dB. Captured lights have the usual quality at least,
 // or what the coefficients reach.
 static const double BELOW_UNSEEN_DB = 13.0, MOST_DB = 46.0, LEAST_COST_DB = 0.3;
+
+// And the file takes at most this share of its photographs as JPEG files.
+static const double MOST_OF_JPEG = 0.5;
 
 static double mean_square(double psnr_db)
 {
@@ -49,7 +53,20 @@ static void settle_quality(struct encode_request *r, const struct relume_decisio
         r->result.unseen_db = decision->unseen_db;
 }
 
-// High dynamic range that nobody asked to be lossy.
+static relume_status settle_bytes(struct encode_request *r)
+{
+    const double pixels = (double)relume_capture_width(r->capture) *
+                          relume_capture_height(r->capture) *
+                          relume_capture_manifest(r->capture)->views;
+    double jpeg = 0.0;
+    const relume_status status =
+        jpeg_model_bytes(&jpeg, r->capture, r->pack.team, r->pack.threads, r->log);
+    r->pack.bytes_per_pixel = MOST_OF_JPEG * jpeg / pixels;
+    return status;
+}
+
+// High dynamic range, and pictures of linear light, which display values would darken between the
+// lamps: nobody asked for loss.
 static void stay_lossless(struct encode_request *r, const struct relume_decision *decision)
 {
     r->is_open = false;
@@ -70,10 +87,13 @@ static relume_status learn(relume_coder **coder, struct encode_request *r)
     relume_status status = RELUME_OK;
     if (request_is_lossy(r) && r->decides) {
         status = lossy_decide(coder, &decision, r->capture, &r->coder, &r->pack);
-        if (!status && r->is_open && r->is_unasked && decision.is_hdr)
+        if (!status && r->is_unasked &&
+            (decision.is_hdr || decision.domain != RELUME_DOMAIN_DISPLAY))
             stay_lossless(r, &decision);
-        else if (!status && r->is_open)
+        else if (!status && r->is_open) {
             settle_quality(r, &decision);
+            status = settle_bytes(r);
+        }
         return status;
     }
     if (request_is_table(r))
@@ -199,7 +219,7 @@ static enum relume_reach find_reach(const struct encode_request *r)
 {
     const struct relume_encode_result *result = &r->result;
     const double asked_db = r->is_open ? r->pack.least_db : r->pack.psnr_db;
-    const double asked = r->pack.bytes_per_pixel;
+    const double asked = r->is_open ? 0.0 : r->pack.bytes_per_pixel;
     const double psnr_db = result->measured.psnr_db, bytes = result->bytes_per_pixel;
     if (!request_is_lossy(r))
         return r->decides && result->quality_db > psnr_db + 0.5 && result->lights > 1 &&

@@ -9,13 +9,14 @@
 #include "core/base/memory.h"
 #include "core/base/thread.h"
 #include "core/math/scalar.h"
+#include "encode/encode/dct_block.h"
 #include "format/coder/basis.h"
 #include "format/lossy/lossy.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 8, AREA = SIDE * SIDE };
+enum { SIDE = DCT_SIDE, AREA = DCT_AREA };
 
 // Blocks of a view: rows of them, each with blocks evenly spread; fewer where planes are many.
 enum { MOST_ROWS = 16, MOST_ACROSS = 24, MOST_NUMBERS = 1 << 21 };
@@ -44,33 +45,6 @@ struct blocks {
 static float *block_at(const struct blocks *b, int plane, size_t i)
 {
     return b->block + ((size_t)plane * b->count + i) * AREA;
-}
-
-static void set_cosines(struct blocks *b)
-{
-    for (int k = 0; k < SIDE; k++)
-        for (int x = 0; x < SIDE; x++)
-            b->cosine[k][x] =
-                (float)(sqrt((k ? 2.0 : 1.0) / SIDE) * cos(M_PI * (x + 0.5) * k / SIDE));
-}
-
-// block[y][x] becomes block[v][u].
-static void transform(float block[AREA], float cosine[SIDE][SIDE])
-{
-    float half[SIDE][SIDE];
-    for (int y = 0; y < SIDE; y++)
-        for (int u = 0; u < SIDE; u++) {
-            half[y][u] = 0.0f;
-            for (int x = 0; x < SIDE; x++)
-                half[y][u] += cosine[u][x] * block[y * SIDE + x];
-        }
-    for (int v = 0; v < SIDE; v++)
-        for (int u = 0; u < SIDE; u++) {
-            float sum = 0.0f;
-            for (int y = 0; y < SIDE; y++)
-                sum += cosine[v][y] * half[y][u];
-            block[v * SIDE + u] = sum;
-        }
 }
 
 // Red, green and blue become the luma and the chromas of Rec. 709.
@@ -113,7 +87,7 @@ static void take_blocks(struct blocks *b, uint16_t *codes, int rows, int row)
         for (int p = 0; b->components == 3 && p < b->info->planes; p += 3)
             to_luma(block_at(b, p, at), block_at(b, p + 1, at), block_at(b, p + 2, at));
         for (int p = 0; p < b->info->planes; p++)
-            transform(block_at(b, p, at), b->cosine);
+            dct_transform(block_at(b, p, at), b->cosine);
     }
 }
 
@@ -230,7 +204,7 @@ relume_status rate_model_curve(struct rate_curve *out, const relume_coefficients
     b.gain = mem_array(planes, sizeof *b.gain);
     uint16_t *codes = mem_array(SIDE * planes, (size_t)info->width * sizeof *codes);
     relume_status status = b.block && b.gain && codes ? RELUME_OK : RELUME_ENOMEM;
-    set_cosines(&b);
+    dct_set_cosines(b.cosine);
     for (int i = 0; !status && i < b.down; i++) {
         const int top = (2 * i + 1) * rows / (2 * b.down) / SIDE * SIDE;
         const int some = smaller_of(SIDE, rows - top);

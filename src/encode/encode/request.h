@@ -21,7 +21,7 @@ struct encode_request {
     enum relume_moving shadows, highlights;
     bool decides;     // the photographs choose basis, domain and storage
     bool is_open;     // and, lossy, the quality
-    bool is_unasked;  // by default: high dynamic range is not to be lossy
+    bool is_unasked;  // open by default: some captures are not to be lossy
     struct relume_encode_result result;
 };
 

@@ -24,7 +24,7 @@
 
 // ---------------------------------------------------------------- what it becomes
 
-// As `relume encode` does, but for shadows and highlights, which take longer to learn.
+// As `relume encode --lossless` does, but for shadows and highlights, which take longer to learn.
 static relume_status encode(const char *path, const char *out, const struct relume_open_params *p)
 {
     relume_capture *capture;
@@ -35,7 +35,7 @@ static relume_status encode(const char *path, const char *out, const struct relu
         status = relume_encode_capture(
             out, capture, NULL,
             relume_encode_capture_params(.log = p->log, .threads = p->threads, .name = path,
-                                         .shadows = RELUME_MOVING_NO,
+                                         .lossless = true, .shadows = RELUME_MOVING_NO,
                                          .highlights = RELUME_MOVING_NO));
     relume_capture_destroy(&capture);
     return status;

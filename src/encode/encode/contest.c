@@ -81,7 +81,7 @@ static relume_status look_at_both(void *context)
 {
     struct contest *c = context;
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && c->member == 0 && i < 2; i++)
+    for (int i = 0; !status && c->member == 0 && i < 2 && c->coder[i]; i++)
         status = look(&c->made[i], c->coder[i], c);
     return status;
 }
@@ -94,6 +94,23 @@ static relume_status keep_curves(void *context)
     return RELUME_OK;
 }
 
+static relume_status look_together(struct contest *c)
+{
+    static const struct team_work work = {begin_look, look_at_both, keep_curves};
+    struct team_array made = {c->made, sizeof c->made};
+    return team_share(c->p->team, "look", &work, c, &team_array_bytes, &made, c->p->log);
+}
+
+// The bytes of a view at the PSNR that is asked for.
+static double bytes_at(double *error, const struct contest *c, int i)
+{
+    const struct rate_curve *curve = &c->curve[i];
+    const double wanted = pow(10.0, -0.1 * c->p->psnr_db);
+    const double q = rate_curve_find_error(curve, fmax(wanted - c->fit[i], 0.0));
+    *error = rate_curve_error(curve, q) + c->fit[i];
+    return rate_curve_bytes(curve, q);
+}
+
 // How good one of them is at the target: minus the decibels that its bytes are worth; or, where
 // bytes are asked for, its PSNR.
 static double merit_of(const struct contest *c, int i)
@@ -104,11 +121,10 @@ static double merit_of(const struct contest *c, int i)
         i == 1 && pixels_of(c->capture) > MANY_PIXELS && c->p->effort != RELUME_EFFORT_SMALLEST;
     const double weight = waits ? WAITING : 1.0;
     if (c->p->psnr_db > 0.0) {
-        const double wanted = pow(10.0, -0.1 * c->p->psnr_db);
-        const double q = rate_curve_find_error(curve, fmax(wanted - c->fit[i], 0.0));
-        const double error = rate_curve_error(curve, q) + c->fit[i];
-        const double missing = fmax(decibels(wanted) - decibels(error), 0.0);
-        return -EACH_HALF * log2(weight * (rate_curve_bytes(curve, q) + header)) - missing;
+        double error;
+        const double own = bytes_at(&error, c, i);
+        const double missing = fmax(c->p->psnr_db - decibels(error), 0.0);
+        return -EACH_HALF * log2(weight * (own + header)) - missing;
     }
     const double bytes = fmax(c->p->bytes_per_pixel * pixels_of(c->capture) - header, 1.0);
     const double q = rate_curve_find_bytes(curve, bytes / weight);
@@ -120,12 +136,9 @@ relume_status contest_keep_better(relume_coder **out, relume_coder *pictures, do
                                   const struct relume_pack_encode_params *p,
                                   const struct relume_project_params *encode)
 {
-    static const struct team_work work = {begin_look, look_at_both, keep_curves};
     struct contest c = {
         .coder = {*out, pictures}, .fit = {fit, 0.0}, .capture = capture, .p = p, .encode = encode};
-    struct team_array made = {c.made, sizeof c.made};
-    const relume_status status =
-        team_share(p->team, "look", &work, &c, &team_array_bytes, &made, p->log);
+    const relume_status status = look_together(&c);
     if (!status && merit_of(&c, 1) > merit_of(&c, 0)) {
         relume_coder *const components = *out;
         *out = pictures;
@@ -134,5 +147,18 @@ relume_status contest_keep_better(relume_coder **out, relume_coder *pictures, do
     relume_coder_destroy(&pictures);
     if (status)
         relume_coder_destroy(out);
+    return status;
+}
+
+relume_status contest_foretell(double *bytes, const relume_coder *coder, double fit,
+                               const relume_capture *capture,
+                               const struct relume_pack_encode_params *p,
+                               const struct relume_project_params *encode)
+{
+    struct contest c = {
+        .coder = {coder, NULL}, .fit = {fit, 0.0}, .capture = capture, .p = p, .encode = encode};
+    double error = 0.0;
+    const relume_status status = look_together(&c);
+    *bytes = status ? 0.0 : bytes_at(&error, &c, 0) * relume_capture_manifest(capture)->views;
     return status;
 }

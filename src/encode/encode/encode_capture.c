@@ -34,6 +34,11 @@ static const double BELOW_UNSEEN_DB = 13.0, MOST_DB = 46.0, LEAST_COST_DB = 0.3;
 // And the file takes at most this share of its photographs as JPEG files.
 static const double MOST_OF_JPEG = 0.5;
 
+// By default, coding takes no longer than all the rest: seconds of a core for a byte that is coded,
+// a few times, for a pixel of a photograph that is read and fitted, and for a file at all. Noise
+// takes many bytes.
+static const double CODING = 4e-6, READING = 0.15e-6, SHORTLY = 2.0;
+
 static double mean_square(double psnr_db)
 {
     return pow(10.0, -0.1 * psnr_db);
@@ -53,26 +58,58 @@ static void settle_quality(struct encode_request *r, const struct relume_decisio
         r->result.unseen_db = decision->unseen_db;
 }
 
+static double pixels_of(const relume_capture *capture)
+{
+    return (double)relume_capture_width(capture) * relume_capture_height(capture) *
+           relume_capture_manifest(capture)->views;
+}
+
 static relume_status settle_bytes(struct encode_request *r)
 {
-    const double pixels = (double)relume_capture_width(r->capture) *
-                          relume_capture_height(r->capture) *
-                          relume_capture_manifest(r->capture)->views;
     double jpeg = 0.0;
     const relume_status status =
         jpeg_model_bytes(&jpeg, r->capture, r->pack.team, r->pack.threads, r->log);
-    r->pack.bytes_per_pixel = MOST_OF_JPEG * jpeg / pixels;
+    r->pack.bytes_per_pixel = MOST_OF_JPEG * jpeg / pixels_of(r->capture);
     return status;
 }
 
-// High dynamic range, and pictures of linear light, which display values would darken between the
-// lamps: nobody asked for loss.
+static relume_status judge_time(bool *slow, const struct encode_request *r,
+                                const relume_coder *coder, const struct relume_decision *decision)
+{
+    const double pixels = pixels_of(r->capture);
+    double bytes = 0.0;
+    const relume_status status =
+        lossy_foretell(&bytes, coder, decision->pooled_db, r->capture, &r->pack);
+    const double coded = fmin(bytes, r->pack.bytes_per_pixel * pixels);
+    const int lights = relume_capture_manifest(r->capture)->lights;
+    *slow = CODING * coded > READING * pixels * lights + SHORTLY;
+    return status;
+}
+
 static void stay_lossless(struct encode_request *r, const struct relume_decision *decision)
 {
     r->is_open = false;
-    r->pack.psnr_db = r->pack.least_db = 0.0;
+    r->pack.psnr_db = r->pack.least_db = r->pack.bytes_per_pixel = 0.0;
     r->pack.domain = decision->domain;
     r->pack.storage = decision->storage;
+}
+
+// Nobody asked for loss: high dynamic range goes without, and pictures of linear light, which
+// display values would darken between the lamps, and what takes long.
+static relume_status settle(struct encode_request *r, const relume_coder *coder,
+                            const struct relume_decision *decision)
+{
+    bool keeps = r->is_unasked && (decision->is_hdr || decision->domain != RELUME_DOMAIN_DISPLAY);
+    relume_status status = RELUME_OK;
+    if (!keeps) {
+        settle_quality(r, decision);
+        status = settle_bytes(r);
+    }
+    if (!status && !keeps && r->is_unasked)
+        status = judge_time(&keeps, r, coder, decision);
+    if (keeps)
+        stay_lossless(r, decision);
+    return status;
 }
 
 static relume_status learn(relume_coder **coder, struct encode_request *r)
@@ -87,14 +124,7 @@ static relume_status learn(relume_coder **coder, struct encode_request *r)
     relume_status status = RELUME_OK;
     if (request_is_lossy(r) && r->decides) {
         status = lossy_decide(coder, &decision, r->capture, &r->coder, &r->pack);
-        if (!status && r->is_unasked &&
-            (decision.is_hdr || decision.domain != RELUME_DOMAIN_DISPLAY))
-            stay_lossless(r, &decision);
-        else if (!status && r->is_open) {
-            settle_quality(r, &decision);
-            status = settle_bytes(r);
-        }
-        return status;
+        return status || !r->is_open ? status : settle(r, *coder, &decision);
     }
     if (request_is_table(r))
         status = relume_coder_between(&r->coder, r->capture, &encode);

@@ -59,18 +59,23 @@ static bool may_be_pictures(const relume_coder *components, const struct relume_
             decision->sharp_db > decision->unseen_db - LEAST_UNSEEN_DB);
 }
 
+static struct relume_project_params lossy_params(const struct relume_pack_encode_params *p)
+{
+    return (struct relume_project_params){.log = p->log,
+                                          .domain = RELUME_DOMAIN_DISPLAY,
+                                          .storage = RELUME_STORE_12,
+                                          .step = RELUME_STEP_HALVED,
+                                          .threads = p->threads,
+                                          .team = p->team};
+}
+
 relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
                            const relume_capture *capture, const struct relume_coder_params *coder,
                            const struct relume_pack_encode_params *params)
 {
     const struct relume_pack_encode_params p = PARAMS_WORK(relume_pack_encode_params, params);
     const bool is_open = p.least_db > 0.0;
-    const struct relume_project_params lossy = {.log = p.log,
-                                                .domain = RELUME_DOMAIN_DISPLAY,
-                                                .storage = RELUME_STORE_12,
-                                                .step = RELUME_STEP_HALVED,
-                                                .threads = p.threads,
-                                                .team = p.team};
+    const struct relume_project_params lossy = lossy_params(&p);
     struct relume_project_params look = lossy;
     relume_coder *pictures = NULL;
     if (is_open) {
@@ -88,6 +93,14 @@ relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
                                    &p, &lossy);
     relume_coder_destroy(out);
     return status;
+}
+
+relume_status lossy_foretell(double *bytes, const relume_coder *coder, double pooled_db,
+                             const relume_capture *capture,
+                             const struct relume_pack_encode_params *p)
+{
+    const struct relume_project_params lossy = lossy_params(p);
+    return contest_foretell(bytes, coder, pow(10.0, -0.1 * pooled_db), capture, p, &lossy);
 }
 
 relume_status relume_pack_decide(relume_coder **out, const relume_capture *capture,

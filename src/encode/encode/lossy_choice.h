@@ -12,4 +12,9 @@ relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
                            const relume_capture *capture, const struct relume_coder_params *coder,
                            const struct relume_pack_encode_params *params);
 
+// The bytes that its planes take at p->psnr_db, all views together.
+relume_status lossy_foretell(double *bytes, const relume_coder *coder, double pooled_db,
+                             const relume_capture *capture,
+                             const struct relume_pack_encode_params *p);
+
 #endif

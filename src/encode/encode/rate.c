@@ -250,6 +250,16 @@ static relume_status find_for(struct rate *r, bool by_bytes, int *quantiser)
     return status ? status : find_quantiser(r, g->count, quantiser);
 }
 
+// The bytes at most are far from enough for the PSNR, by the model.
+static bool is_too_large(struct rate *r)
+{
+    static const double FAR = 1.3;
+    r->by_bytes = false;
+    r->last = 0;
+    return r->target.bytes > 0.0 &&
+           rate_curve_bytes(&r->curve, by_model(r)) > FAR * r->target.bytes;
+}
+
 static relume_status find_by_preset(struct rate *r, enum av1_preset_number preset,
                                     struct av1_effort *effort)
 {
@@ -258,9 +268,10 @@ static relume_status find_by_preset(struct rate *r, enum av1_preset_number prese
     forget(r);
     r->plan.preset = preset;
     relume_status status = find_model(r, av1_presets[preset].bits);
+    const bool by_bytes = !by_psnr || is_too_large(r);
     if (!status)
-        status = find_for(r, !by_psnr, &effort->quantiser);
-    if (!status && by_psnr && r->target.bytes > 0.0 &&
+        status = find_for(r, by_bytes, &effort->quantiser);
+    if (!status && !by_bytes && r->target.bytes > 0.0 &&
         r->trial[effort->quantiser].bytes > r->target.bytes)
         status = find_for(r, true, &effort->quantiser);
     return status;

@@ -74,7 +74,7 @@ struct relume_encode_capture_params {
     // Lossy, at most one of the three: the smallest file of a PSNR (10 to 60 dB), or the best file
     // of at most that many bytes for each pixel of each view (up to 100), or the smallest file in
     // which 99 % of the pixels of every photograph differ by less than `jnd` just noticeable
-    // differences (0.05 to 100; several files are tried). Default: without loss, or by `effort`.
+    // differences (0.05 to 100; several files are tried). Default: by the photographs, as `effort`.
     double psnr_db, bytes_per_pixel, jnd;
     // Write here instead of the file; temporary data in $TMPDIR
     const struct relume_writer *writer;
@@ -92,7 +92,11 @@ struct relume_encode_capture_params {
     // about 0.1 dB worse than by a lossless file. With another basis, or where a file is coded
     // again, the quality is RELUME_LOSSY_DB.
     enum relume_effort effort;
-    bool lossless;  // without loss, which is the default, too: refused with what asks for loss
+    // Without loss; refused with what asks for loss. Otherwise a file is lossless by quality_db,
+    // storage, step, compression, codebooks, a basis, a domain other than display; and by itself of
+    // high dynamic range, of fewer than 4096 pixels, of hard shadows in linear light, and where
+    // coding would take longer than all the rest.
+    bool lossless;
 };
 #define relume_encode_capture_params(...)                                                          \
     (&(const struct relume_encode_capture_params){RELUME_SIZED(relume_encode_capture_params),      \

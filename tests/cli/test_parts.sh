@@ -36,14 +36,14 @@ joined 'one step' masked 2 --basis pca --step common --bits 12
 "$RELUME" synth bust -o flat --size 70 --lights 12 --samples 1 -q
 "$sphere" cut --size 44 --lights 9 --views 2 --mask --format jpg
 "$RELUME" synth attic -o room --size 40 --lights 8 --samples 1 -q
-joined 'rows, by itself' flat 3
+joined 'rows, by itself' flat 3 --lossless
 joined 'rows, as many as can be' flat 5 --basis sh --coefficients 4
 joined 'rows of halves, one step' flat 2 --basis table --bits half --step common
 joined 'rows of floats' flat 2 --basis sh --coefficients 4 --bits float --compression zip
 joined 'rows, luminance and colour' flat 2 --basis sh --coefficients 4 --colour luminance --bits log
 joined 'rows of one of two views, masks' cut 5
 joined 'rows of one of two views, one step' cut 3 --basis pca --step common --bits 12
-joined 'rows of a panorama' room 2
+joined 'rows of a panorama' room 2 --lossless
 check 'the joined file is whole' relume check joined.exr
 # the pyramid of rows is made when they are joined
 "$sphere" large --size 150 --lights 9 --hemisphere --mask --format jpg
@@ -79,7 +79,6 @@ shared 'learnt together, masks' masked 3 --basis pca
 shared 'learnt together, rows of JPEGs' cut 5 --basis pca --coefficients 8
 shared 'learnt together, rows, by itself' flat 3 --lossless
 check 'their steps are learnt, so that join copies rows' grep -q relume.part.stored 1.part
-shared 'learnt together, rows with loss' flat 3
 codebook_of_all() { # name options...: nothing was learnt first
     name=$1
     shift

@@ -63,10 +63,10 @@ static const struct option options[] = {
            "compress with loss: the best quality within this many bytes per pixel of each view",
            1e-3, 100),
     NAME("--effort", effort, "E",
-         "time for lossy planes: fast, usual, smallest; alone the photographs choose the quality",
+         "time for lossy planes: fast, usual (default), smallest; the photographs choose the "
+         "quality",
          RELUME_EFFORT_FAST, "fast", "usual", "smallest"),
-    FLAG("--lossless", lossless,
-         "keep all that the planes hold, for measuring and editing; the default"),
+    FLAG("--lossless", lossless, "keep all that the planes hold, for measuring and editing"),
     NUMBER("--quality", quality, "DB",
            "basis auto: the fewest coefficients, at most 128, that reproduce the photographs at "
            "this PSNR; default: 38",
@@ -79,7 +79,8 @@ static const struct option options[] = {
          "rgb", "luminance"),
     OWN("--bits", bits, "B",
         "8, 10, 12, 16, half, log (half, coarser and smaller) or float; default: basis auto: the "
-        "fewest bits whose error is invisible; other bases: 8, or half for high dynamic range",
+        "fewest bits whose error is invisible; other bases: 8, or half for high dynamic range; "
+        "makes a lossless file",
         take_bits),
     NAME("--step", step, "S",
          "rounding step: plane (its own for each plane of coefficients) or common (one for all); "

@@ -34,9 +34,8 @@ static const double BELOW_UNSEEN_DB = 13.0, MOST_DB = 46.0, LEAST_COST_DB = 0.3;
 // And the file takes at most this share of its photographs as JPEG files.
 static const double MOST_OF_JPEG = 0.5;
 
-// By default, coding takes no longer than all the rest: seconds of a core for a byte that is coded,
-// a few times, for a pixel of a photograph that is read and fitted, and for a file at all. Noise
-// takes many bytes.
+// By default coding is to take less time than the rest. Seconds of a core: for a byte
+// that is coded a few times, for a pixel of a photograph that is read and fitted, for any file.
 static const double CODING = 4e-6, READING = 0.15e-6, SHORTLY = 2.0;
 
 static double mean_square(double psnr_db)
@@ -94,8 +93,8 @@ static void stay_lossless(struct encode_request *r, const struct relume_decision
     r->pack.storage = decision->storage;
 }
 
-// Nobody asked for loss: high dynamic range goes without, and pictures of linear light, which
-// display values would darken between the lamps, and what takes long.
+// By default these stay lossless: high dynamic range, pictures of linear light, which display
+// values would darken between the lamps, and what takes long to code.
 static relume_status settle(struct encode_request *r, const relume_coder *coder,
                             const struct relume_decision *decision)
 {

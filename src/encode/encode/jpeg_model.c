@@ -1,7 +1,7 @@
 // jpeg_model.c - blocks of photographs, transformed, quantised and counted as a JPEG encoder does
 //
 // Symbols are those of ITU-T T.81: runs of zeros with the length of the number behind them. Their
-// entropy, of all blocks together, stands for the Huffman codes.
+// entropy over all blocks is about the length of the Huffman codes.
 #include "encode/encode/jpeg_model.h"
 
 #include "capture/manifest/reflectance_table.h"
@@ -71,7 +71,7 @@ static int bits_of(int value)
     return bits;
 }
 
-// A row of a unit as codes, red, green and blue; beyond the edge its last pixel.
+// A row of a unit as codes, red, green and blue. Its last pixel is repeated beyond the edge.
 static void take_row(float rgb[3][UNIT], const struct looking *l, int light, const float *white,
                      int y, int left)
 {

@@ -68,16 +68,17 @@ static bool is_small(const relume_capture *capture)
     return (double)relume_capture_width(capture) * relume_capture_height(capture) < LEAST_PIXELS;
 }
 
-// Nothing says how the planes are stored.
+// Nothing says how the planes are stored. Parts may be more than lossy planes have tiles.
 static bool is_usual(const struct relume_encode_capture_params *p, const relume_capture *capture)
 {
     return !p->lossless && p->quality_db == 0.0 && !p->storage && !p->step && !p->compression &&
            (p->domain == RELUME_DOMAIN_AUTO || p->domain == RELUME_DOMAIN_DISPLAY) &&
-           p->display.curve != RELUME_CURVE_LOG && capture && !is_small(capture);
+           p->display.curve != RELUME_CURVE_LOG && !p->parts && !p->team && capture &&
+           !is_small(capture);
 }
 
-// The quality is left to the photographs too, which are known later: by an effort alone, or by
-// default.
+// An effort alone, or nothing at all, leaves the quality to the photographs, which are known
+// later.
 static bool is_open(const struct relume_encode_capture_params *p, const relume_capture *capture)
 {
     return decides(p) && (p->effort || is_usual(p, capture)) && p->psnr_db == 0.0 &&

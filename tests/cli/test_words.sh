@@ -54,7 +54,7 @@ for n in 239 251; do
 done
 
 # ---- sentences that say what to do
-expect_fail 'a relume file for a capture' 1 'this is a relume file, encoded already; expected the capture.json' x.exr "$RELUME" encode "$long.exr" -o x.exr
+expect_fail 'a relume file for a capture' 1 'this is a relume file, encoded already; expected the capture.json' x.exr "$RELUME" encode "$long.exr" -o x.exr --lossless
 expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture', for a panorama 'relume panorama'" x.exr "$RELUME" encode b.png -o x.exr
 printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\nabcd' >sky.hdr
 expect_fail 'an HDR map for a capture' 1 "sky.hdr: this is a photograph; give the .lp file, .* for a panorama 'relume panorama'" x.exr "$RELUME" encode sky.hdr -o x.exr

@@ -80,6 +80,29 @@ check 'of a usual one: 8 bits' [ "$(told bits)" = 8 ]
 encode photo
 check 'a photograph: 8 bits' [ "$(told basis) $(told bits) $(told domain)" = 'table 8 display' ]
 
+# ---- lossy by default, where nobody sees it and coding is quick
+"$sphere" seen --size 96 --lights 24 --hemisphere --format jpg
+encode seen --lossless
+whole=$(wc -c <e.exr) unseen=$(sed -n 's/.*directions: about \([0-9]*\) dB.*/\1/p' said.txt)
+check 'lossless is said' grep -q ' bits, lossless, ' said.txt
+encode seen
+check 'by default with loss' grep -q 'coded with loss' said.txt
+check 'in AV1 pictures' [ "$(told compression)" = av1 ]
+below 'in a third of the bytes' "$(wc -c <e.exr)" $((whole / 3))
+above 'at 38 dB' "$(psnr e.exr seen)" 38
+above 'unseen lights are shown as well' "$(sed -n 's/.*directions: about \([0-9]*\) dB.*/\1/p' said.txt)" $((unseen - 1))
+cp e.exr default.exr
+encode seen --effort usual
+check 'which is the usual effort' cmp default.exr e.exr
+for option in '--bits 8' '--step common' '--compression zip' '--quality 38' '--domain linear' '--basis pca'; do
+    encode seen $option --threads 1
+    check "lossless by $option" [ "$(told compression)" != av1 ]
+done
+"$sphere" bright --size 96 --lights 24 --hemisphere
+for i in 3 4 5; do "$mkimage" gain bright/view00/light000$i.exr lit.exr 40 && mv lit.exr bright/view00/light000$i.exr; done
+encode bright --highlights no
+check 'high dynamic range: lossless' [ "$(told compression)" != av1 ]
+
 # Real maps, at several exposures: peaks of thousands, and shadows.
 for map in hdri-polyhaven-1k/studio.hdr exr-openexr-images/StageEnvLatLong.exr; do
     if [ ! -f "$data/$map" ]; then skip "$map" 'no shared data'; continue; fi

@@ -110,7 +110,7 @@ static void describe_reach(char text[128], const struct encoded_file *f)
                  r->coefficients);
         break;
     case RELUME_REACH_PSNR_ABOVE:
-        snprintf(text, 128, "; %g dB is more than it reaches%s", r->quality_db,
+        snprintf(text, 128, "; %.4g dB is more than it reaches%s", r->quality_db,
                  r->lights == 1 ? "; without --psnr nothing visible is lost" : "");
         break;
     case RELUME_REACH_PSNR_BELOW:

@@ -92,10 +92,10 @@ struct relume_encode_capture_params {
     // about 0.1 dB worse than by a lossless file. With another basis, or where a file is coded
     // again, the quality is RELUME_LOSSY_DB.
     enum relume_effort effort;
-    // Without loss; refused with what asks for loss. Otherwise a file is lossless by quality_db,
-    // storage, step, compression, codebooks, a basis, a domain other than display; and by itself of
-    // high dynamic range, of fewer than 4096 pixels, of hard shadows in linear light, and where
-    // coding would take longer than all the rest.
+    // Without loss; refused with what asks for loss. So are files with quality_db, storage, step,
+    // compression, codebooks, a basis, or a domain other than display. By default captures of high
+    // dynamic range, of fewer than 4096 pixels, or with hard shadows in linear light are lossless.
+    // So are those that take longer to code than all the rest.
     bool lossless;
 };
 #define relume_encode_capture_params(...)                                                          \
@@ -192,7 +192,7 @@ RELUME_RESULT relume_status relume_encode_capture(
 // functions of light, depth, masks, levels and models of shadows and highlights; `measured.psnr_db`
 // compares with what the file itself shows under its captured lights. Of the params log, threads,
 // name, pyramid, psnr_db, bytes_per_pixel, effort and writer are used. RELUME_EINVAL for other
-// params, else as relume_encode_capture.
+// params; errors as relume_encode_capture.
 RELUME_RESULT relume_status relume_encode_again(const char *path, relume_pack *pack,
                                                 struct relume_encode_result *result,
                                                 const struct relume_encode_capture_params *params);

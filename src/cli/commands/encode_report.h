@@ -14,7 +14,7 @@ struct encoded_file {
 // Sends quality, size and remarks to the log. The state of learning goes to standard output, where
 // scripts wait for it.
 void say_encoded(const struct args *args, const struct encoded_file *file);
-// The same of a relume file of so many bytes that was coded again; there is no capture.
+// The same of a relume file that was coded again, which had `bytes`; there is no capture.
 void say_coded_again(const struct args *args, const struct encoded_file *file, double bytes);
 
 #endif

@@ -13,8 +13,8 @@ relume_status contest_keep_better(relume_coder **out, relume_coder *pictures, do
                                   const struct relume_pack_encode_params *p,
                                   const struct relume_project_params *encode);
 
-// The bytes of all views at the PSNR of `p` by the same model, of a coder that misses photographs
-// by `fit`; where 8 bits do not reach it, the bytes of the finest quantiser. Likewise shared.
+// The bytes of all views at the PSNR of `p` by the same model, likewise shared. The coder misses
+// photographs by `fit`. Where 8 bits do not reach it, the finest quantiser counts.
 relume_status contest_foretell(double *bytes, const relume_coder *coder, double fit,
                                const relume_capture *capture,
                                const struct relume_pack_encode_params *p,

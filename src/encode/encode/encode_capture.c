@@ -34,7 +34,7 @@ static const double BELOW_UNSEEN_DB = 13.0, MOST_DB = 46.0, LEAST_COST_DB = 0.3;
 // And the file takes at most this share of its photographs as JPEG files.
 static const double MOST_OF_JPEG = 0.5;
 
-// By default coding is to take less time than the rest. Seconds of a core: for a foretold byte
+// By default coding is to take less time than the rest. Seconds of a core: for a byte of the model
 // that is coded a few times, for a pixel of a photograph that is read and fitted, for any file.
 static const double CODING = 1.5e-6, READING = 0.15e-6, SHORTLY = 2.0;
 

@@ -1,6 +1,6 @@
 // jpeg_model.c - blocks of photographs, transformed, quantised and counted as a JPEG encoder does
 //
-// Symbols are those of ITU-T T.81: runs of zeros with the length of the number behind them. Their
+// ITU-T T.81 has the symbols: runs of zeros with the length of the number behind them. Their
 // entropy over all blocks is about the length of the Huffman codes.
 #include "encode/encode/jpeg_model.h"
 
@@ -15,8 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Units of four blocks of luma and one of each chroma; so many of them lie side by side where a
-// photograph is looked at, since a mean is coded as a difference from the last one.
+// Units of four blocks of luma and one of each chroma. RUN of them lie side by side, since a mean
+// is coded as a difference from the last one.
 enum { UNIT = 16, RUN = 4, LUMAS = 4, BLOCKS = LUMAS + 2 };
 
 // Rows of units, runs in each, photographs.

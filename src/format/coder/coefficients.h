@@ -156,9 +156,9 @@ struct encode_square {
     double sum;  // of squared differences of display values, 1 = white, of all lights
     uint64_t count;
 };
-// The same on tiles: out[end - first], each by itself. Of views of 800000
-// pixels or more these are sums of samples: one row of 2, 4 or 8, at least 400000 pixels of the
-// view. Of a row only the values of those tiles are asked for.
+// The same on tiles: out[end - first], each by itself. Views of 800000 pixels or more are judged
+// by samples: one row of 2, 4 or 8, at least 400000 pixels of the view. Values of those tiles alone
+// are asked for.
 relume_status encode_judge_tiles(struct encode_square *out, relume_coefficients *c,
                                  const relume_capture *capture, int view,
                                  const struct encode_tiles *tiles,

@@ -42,7 +42,7 @@ struct encoding {
     double *shown;               // [the same][lights]
     int measured[BAND_ROWS];     // rows of the band that are looked at
     bool shown_only;             // of what is measured only squares of display values matter
-    int apart;                   // tiles are judged on one row of so many
+    int apart;                   // tiles are judged on one row of these
     int run, first_run, runs;    // pixels of a row that are measured together, and which of them
     struct thread_task packing;  // of a band while the next one is read
     int packed_row, packed_rows;
@@ -479,7 +479,7 @@ static relume_status encode_bands(struct encoding *e, const relume_capture *capt
 struct stored_row {
     uint16_t *waiting, *codes;  // [planes][x], [x]
     float *before, *after;      // [planes][x]: as it waits, as it will be stored
-    float *wanted, *again;      // [lights][x]: of them
+    float *wanted, *again;      // [lights][x]: values of these
 };
 
 struct storage {

@@ -77,7 +77,7 @@ int av1_most_members(int pictures);
 // of another one is predicted from the first one's picture of that number and the one before, and
 // from its own last. The bytes depend on the version of libaom, not on the machine or `threads`,
 // which are at least two. libaom runs in a process of relume-helper where that program is found,
-// else in this one. RELUME_ENOMEM; RELUME_ESYSTEM and RELUME_ECODER (the process ended) with a
+// or in this one. RELUME_ENOMEM; RELUME_ESYSTEM and RELUME_ECODER (the process ended) with a
 // message. Thread-safety: safe.
 relume_status av1_encode(struct av1_bytes *out, const uint16_t *const *samples, int members,
                          const struct av1_shape *shape, const struct av1_effort *effort,

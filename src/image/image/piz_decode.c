@@ -1,7 +1,7 @@
 // piz_decode.c - OpenEXR's PIZ compression undone, several times as fast as its library
 //
-// The reverse of piz.c: a table looks up all symbols whose codes fit its bits at once, a channel's
-// plane stays in the cache from its symbols to its samples, and the wavelet's last level, three
+// The reverse of piz.c. A table looks up all symbols whose codes fit its bits at once. A channel's
+// plane stays in the cache from its symbols to its samples. The wavelet's last level, three
 // quarters of the work, runs in vector registers. Blocks that piz.c would not make are left to the
 // library, which knows whether they are damaged.
 #include "image/image/piz.h"

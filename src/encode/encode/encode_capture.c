@@ -101,7 +101,8 @@ static relume_status settle(struct encode_request *r, const relume_coder *coder,
         status = settle_bytes(r);
     }
     if (!status && !keeps)
-        status = lossy_foretell(&bytes, coder, decision->pooled_db, r->capture, &r->pack);
+        status = lossy_foretell(&bytes, coder, decision->pooled_db, r->capture,
+                                r->asked->writer ? NULL : r->path, &r->pack);
     keeps |= !status && r->is_unasked && is_slow(r, bytes);
     if (keeps)
         stay_lossless(r, decision);

@@ -96,10 +96,11 @@ relume_status lossy_decide(relume_coder **out, struct relume_decision *decision,
 }
 
 relume_status lossy_foretell(double *bytes, const relume_coder *coder, double pooled_db,
-                             const relume_capture *capture,
+                             const relume_capture *capture, const char *scratch,
                              const struct relume_pack_encode_params *p)
 {
-    const struct relume_project_params lossy = lossy_params(p);
+    struct relume_project_params lossy = lossy_params(p);
+    lossy.scratch = scratch;
     return contest_foretell(bytes, coder, pow(10.0, -0.1 * pooled_db), capture, p, &lossy);
 }
 

@@ -139,7 +139,7 @@ Eigen:src/core/kernel/lsq_eigen.cpp
 fftw3:src/core/math/fft.c
 kissfft:src/core/math/fft_kiss.c
 jansson:src/core/base/json.c
-jpeglib:src/image/image/jpeg.c tests/unit/test_picture.c
+jpeglib:src/image/image/jpeg.c tests/unit/test_picture.c tests/unit/test_jpeg_model.c
 png:src/image/image/png.c
 aom/:src/format/lossy/av1_write.c tests/tools/preload/msan.c
 dav1d:src/format/lossy/av1_read.c tests/tools/preload/msan.c

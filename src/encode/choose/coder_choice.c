@@ -358,7 +358,7 @@ static relume_status choose_coder(struct choice *choice, bool asked)
     const int limit = asked ? MOST_ASKED : MOST;
     const int most = 3 * lights < limit ? 3 * lights : limit;
     const int usual = 3 * lights < USUAL ? 3 * lights : USUAL;
-    // Of lossy planes more components are nearly free but for their functions in the header.
+    // More components of lossy planes are nearly free but for their functions in the header.
     const bool lossy = choice->encode.step == RELUME_STEP_HALVED;
     const int least = !asked ? usual : lossy ? smaller_of(lights, USUAL) : 1;
     relume_status status = make_coder(choice, fixed ? fixed : usual);

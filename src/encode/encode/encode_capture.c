@@ -100,10 +100,10 @@ static relume_status settle(struct encode_request *r, const relume_coder *coder,
         settle_quality(r, decision);
         status = settle_bytes(r);
     }
-    if (!status && !keeps)
+    if (!status && !keeps && r->is_unasked)
         status = lossy_foretell(&bytes, coder, decision->pooled_db, r->capture,
                                 r->asked->writer ? NULL : r->path, &r->pack);
-    keeps |= !status && r->is_unasked && is_slow(r, bytes);
+    keeps |= !status && is_slow(r, bytes);
     if (keeps)
         stay_lossless(r, decision);
     return status;
